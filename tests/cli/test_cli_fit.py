@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import signal
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.fitting.measured import on_turntable, seen
+
+import trundle as tr
 
 from .conftest import Command
 
@@ -70,6 +73,14 @@ def test_a_bad_fit_says_what_may_be_missing_and_leaves_with_3(here: Command) -> 
     assert "what is added" in done.out
     assert "out/fit.toml" in done.files
     assert "out/fit.png" not in done.files
+
+
+def test_an_interrupt_after_the_files_says_that_they_are_there(here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tr.Fit, "compare", lambda _: signal.raise_signal(signal.SIGINT))
+    done = here("fit", "track.csv", *ASKED, "--no-figure", "--compare")
+    assert (done.status, done.err) == (130, "trundle: interrupted; the files are written\n")
+    assert done.out.endswith("Wrote track/fit.toml, track/fit.nc\n")
+    assert "track/fit.toml" in done.files
 
 
 def test_what_cannot_be_decided_leaves_with_4(here: Command) -> None:

@@ -5,20 +5,27 @@ from __future__ import annotations
 import contextlib
 import signal
 import time
+from pathlib import Path
 
 import pytest
 
 from trundle.cli.screen import ProgressBar
-from trundle.cli.signals import Ending, check, ending
+from trundle.cli.signals import Ending, check, ending, heard
+from trundle.cli.writing import write_together
 
 
 def test_an_interrupt_that_was_lost_is_raised_at_the_next_step() -> None:
-    with ending() as handler:
-        with pytest.raises(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-        assert handler.number == signal.SIGINT
-        with pytest.raises(KeyboardInterrupt), ProgressBar(wanted=False) as bar:
-            bar(0.5)
+    def lose_it() -> None:
+        with ending() as handler:
+            with contextlib.suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+            assert handler.number == signal.SIGINT
+            with ProgressBar(wanted=False) as bar:
+                bar(0.5)
+            raise AssertionError
+
+    with pytest.raises(KeyboardInterrupt):
+        lose_it()
 
 
 @pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
@@ -75,6 +82,72 @@ def test_handlers_are_put_back() -> None:
         assert isinstance(signal.getsignal(signal.SIGINT), Ending)
     assert signal.getsignal(signal.SIGINT) is before
     check()
+
+
+def test_whether_files_are_there_is_known_at_the_end(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), ending() as handler:
+        write_together(tmp_path, {"a.txt": lambda _: signal.raise_signal(signal.SIGINT)})
+    assert not handler.written
+    with ending() as handler:
+        write_together(tmp_path, {"a.txt": lambda path: path.write_text("whole")})
+    assert handler.written
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_an_interrupt_that_is_swallowed_comes_again() -> None:
+    """A library may clear the exception, once or many times, and go on."""
+    swallowed = 0
+
+    def swallow() -> None:
+        nonlocal swallowed
+        until = time.monotonic() + 20
+        with ending():
+            while time.monotonic() < until and swallowed < 3:
+                with contextlib.suppress(KeyboardInterrupt):
+                    if not swallowed:
+                        signal.raise_signal(signal.SIGINT)
+                    while time.monotonic() < until:
+                        time.sleep(0.01)
+                swallowed += 1
+
+    with pytest.raises(KeyboardInterrupt):
+        swallow()
+    assert swallowed == 3
+
+
+def test_an_interrupt_that_is_swallowed_at_the_end_is_not_forgotten() -> None:
+    with pytest.raises(KeyboardInterrupt), ending(), contextlib.suppress(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_what_is_cleared_up_on_the_way_out_is_left_alone(number: int) -> None:
+    cleared = []
+
+    def clear() -> None:
+        time.sleep(0.7)
+        cleared.append("all")
+
+    def leave() -> None:
+        with ending(), contextlib.ExitStack() as stack:
+            stack.callback(clear)
+            try:
+                signal.raise_signal(number)
+            finally:
+                clear()
+
+    with pytest.raises((KeyboardInterrupt, SystemExit)):
+        leave()
+    assert cleared == ["all", "all"]
+
+
+def test_a_signal_that_was_heard_comes_no_more() -> None:
+    with ending() as handler:
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        heard()
+        time.sleep(0.7)
+    assert handler.number == signal.SIGINT
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no SIGHUP here")

@@ -60,15 +60,41 @@ def test_four_marks_give_the_track_of_a_rendered_film(by_marks: Any, path: Any) 
     np.testing.assert_allclose(by_marks.calibration.camera.place, PLAIN.lens, atol=2e-3)
 
 
+def lasting(track: Any, true: dict[str, Any]) -> Any:
+    """Return by what smooth fields of second degree all places that a film showed are off, (12,), m at the edge."""
+    from itertools import product
+
+    shown = np.concatenate([np.column_stack([track[x], track[y]]) for x, y in (("x", "y"), ("mark_x", "mark_y"))])
+    right = np.concatenate([np.column_stack([true[x], true[y]]) for x, y in (("x", "y"), ("mark_x", "mark_y"))])
+    seen = np.isfinite(shown).all(axis=1)
+    u = shown[seen] - shown[seen].mean(axis=0)
+    u /= np.linalg.norm(u, axis=1).max()
+    powers = [(i, j) for i, j in product(range(3), repeat=2) if i + j < 3]
+    terms = np.column_stack([u[:, 0] ** i * u[:, 1] ** j for i, j in powers]) / np.sqrt(len(powers))
+    return np.linalg.lstsq(terms, (shown - right)[seen], rcond=None)[0].ravel()
+
+
+def test_a_compressed_film_is_as_accurate_as_it_says(by_marks: Any, path: Any) -> None:
+    """MPEG-4 leaves errors that last for many frames: those of this film are a quarter of a pixel, and not a tenth."""
+    from scipy.stats import chi2
+
+    turned = RATE * by_marks.time
+    true = dict(zip(("x", "y"), path(by_marks.time).T, strict=True))
+    true |= {"mark_x": PLAIN.mark * np.cos(turned), "mark_y": PLAIN.mark * np.sin(turned)}
+    off, said = lasting(by_marks, true), by_marks.data.attrs["accuracy"]
+    assert said == pytest.approx(0.25 * PIXEL, rel=0.2)
+    assert 1e-3 < chi2.sf(((off / said) ** 2).sum(), off.size) < 1 - 1e-3
+    assert chi2.sf(((off / (0.4 * said)) ** 2).sum(), off.size) < 1e-6
+
+
 def test_a_compressed_film_makes_a_good_fit_with_errors_that_hold(by_marks: Any, tmp_path: Path) -> None:
-    """MPEG-4 leaves errors of a tenth of a pixel that last for many frames: they are no fault of the law."""
     again = tr.read_track(by_marks.save(tmp_path / "track.csv"))
+    assert again.data.attrs["accuracy"] == pytest.approx(by_marks.data.attrs["accuracy"], rel=0.05)
     for track in (by_marks, again):
-        assert 0.05 * PIXEL < track.data.attrs["accuracy"] < 0.15 * PIXEL
         found = fitted(track)
         assert found.answer == "good"
         ratio = found["body.inertia_ratio"]
-        assert abs(ratio.value - RATIO) < min(0.01 * RATIO, 3 * ratio.sigma)
+        assert abs(ratio.value - RATIO) < min(0.01 * RATIO, 2 * ratio.sigma)
         assert ratio.sigma < 1e-3
 
 

@@ -6,15 +6,15 @@ cannot decide; 130, interrupted; 1, anything else.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import gc
 import os
 import sys
-import traceback
 from collections.abc import Sequence
 from typing import Any
 
-from .signals import INTERRUPTED, ending
+from .signals import INTERRUPTED, Ending, deaf, ending
 
 OTHER, BAD_INPUT, CARD_FAILED, CANNOT_DECIDE = 1, 2, 3, 4
 
@@ -41,6 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             with contextlib.suppress(OSError, ValueError):
                 stream.flush()
         os._exit(status)
+    atexit.register(deaf)
     sys.exit(status)
 
 
@@ -55,8 +56,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")  # a terminal that has no Greek letters
+    handler = Ending()
     try:
-        with ending():
+        with ending() as handler:
             from .app import command
 
             status = command().main(arguments, prog_name="trundle", standalone_mode=False)
@@ -68,7 +70,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:  # noqa: BLE001  the last resort: no traceback reaches a user
         return _explain(error)
     if status == INTERRUPTED:
-        _say("interrupted; nothing written")
+        _say("interrupted; the files are written" if handler.written else "interrupted; nothing written")
     return int(status or 0)
 
 
@@ -77,6 +79,8 @@ def _explain(error: Exception) -> int:
     from ..errors import InvalidValueError, MissingExtraError, TrundleError, UnknownNameError
 
     if os.environ.get("TRUNDLE_DEBUG"):
+        import traceback
+
         traceback.print_exception(error)
     if hasattr(error, "format_message") and hasattr(error, "exit_code"):  # typer's: a wrong option or command
         return _explain_usage(error)

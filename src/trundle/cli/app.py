@@ -175,17 +175,13 @@ def finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tupl
 
 def report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, as_json: bool) -> None:
     """Print the card, what else there is to say and the files' names; leave with a status if a check failed."""
-    try:
-        if as_json:
-            screen.out(card.as_json())
-        elif not quiet:
-            screen.show_card(card)
-            for line in lines:
-                screen.out(line)
-            screen.wrote(written)
-    except KeyboardInterrupt:
-        screen.note("trundle: interrupted; the files are written")
-        raise SystemExit(signals.INTERRUPTED) from None
+    if as_json:
+        screen.out(card.as_json())
+    elif not quiet:
+        screen.show_card(card)
+        for line in lines:
+            screen.out(line)
+        screen.wrote(written)
     if not card.passed:
         failed = ", ".join(figure.name for figure in card.failures)
         screen.note(f"trundle: the card fails: {failed}")

@@ -127,7 +127,10 @@ def fit(
     if as_json:
         screen.show_json(found.as_dict())
     elif not quiet:
-        _tell(found, draws, written, compare=compare)
+        screen.out(str(found))
+        screen.out(f"The card of the fitted run {'passes' if found.card.passed else 'FAILS'}.")
+        screen.wrote(written)
+        _ask_more(found, draws, compare=compare)
     _leave(found)
 
 
@@ -139,15 +142,12 @@ def _names(table: str | None, *, figure: bool) -> list[str]:
     return [SCENARIO, DATA, *([FIGURE, PAGE] if figure else []), *([TABLES[table]] if table else [])]
 
 
-def _tell(found: Fit, draws: int, written: list[Path], *, compare: bool) -> None:
-    screen.out(str(found))
-    card = found.card
-    screen.out(f"The card of the fitted run {'passes' if card.passed else 'FAILS'}.")
+def _ask_more(found: Fit, draws: int, *, compare: bool) -> None:
+    """Print what takes as long as the fit again, or longer."""
     if compare or found.answer == "bad":
         screen.out(str(found.compare()))
     if draws:
         screen.out(str(found.sample(draws)))
-    screen.wrote(written)
 
 
 def _leave(found: Fit) -> None:

@@ -8,7 +8,7 @@ import typer
 
 from ..errors import InvalidValueError
 from ..extras import need
-from . import screen
+from . import screen, signals
 
 
 def lab(
@@ -37,7 +37,6 @@ def lab(
     """
     need("lab", "trundle lab")
     import gc
-    from contextlib import suppress
 
     from ..lab.links import page_of
     from ..lab.security import check_embedder
@@ -64,6 +63,8 @@ def lab(
 
     settings = Settings(host=host, exposed=exposed, embed_from=tuple(embed_from or ()))
     gc.enable()  # unlike other commands, this one lasts
-    with suppress(KeyboardInterrupt):
+    try:
         serve(settings, port, page=page, open_browser=not no_open, told=told)
+    except KeyboardInterrupt:
+        signals.heard()
     screen.out("The lab has ended.")

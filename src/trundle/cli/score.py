@@ -173,8 +173,10 @@ def _run(
             rows.append(row)  # noqa: PERF402  those that are there are kept, whatever stops it
     except KeyboardInterrupt:
         stopped = signals.INTERRUPTED
+        signals.heard()
     except SystemExit as end:
         stopped = end.code
+        signals.heard()
     found = Score(tuple(rows))
     for line in found.changes_from(older):
         if not quiet:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..errors import InvalidValueError, SolverError, TrundleError
 from ..files import staging
+from . import signals
 
 
 class CannotWriteError(TrundleError):
@@ -55,6 +56,7 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
                 _to_disk(stage / name)
             with _uninterrupted():
                 _move(stage, folder, above, list(files))
+            signals.wrote()
     except (OSError, RuntimeError) as error:  # RuntimeError: HDF5 on a full disk
         if isinstance(error, RuntimeError) and "HDF5" not in str(error) and "H5" not in str(error):
             raise

@@ -115,6 +115,11 @@ class Film:
             capture.release()
         return number.to_bytes(4, "little", signed=number < 0).decode("latin-1").lower()
 
+    def bits(self, seen: int) -> float:
+        """Return how many bits the file has for a pixel of a picture, of as many pictures as it says, or were seen."""
+        size, _, count = self.properties()
+        return 8.0 * self.path.stat().st_size / (max(count or seen, 1) * size[0] * size[1])
+
     def rotation(self) -> int:
         """Return by how many degrees the file says that its pictures are to be turned; they come turned."""
         import cv2

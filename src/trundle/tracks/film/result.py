@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _TOLD = 200  # frames that are named in a file
 _PARTS = {
     0.1: "a tenth of a pixel",
-    0.25: "a quarter of a pixel, since its codec (MPEG-4 before H.264) is coarse: film in H.264, HEVC or VP9",
+    0.25: "a quarter of a pixel, since the film is strongly compressed: film at a higher quality",
 }
 
 
