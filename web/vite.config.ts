@@ -61,6 +61,7 @@ const lab: UserConfig = {
     outDir: output,
     emptyOutDir: false,
     assetsInlineLimit: 0,
+    cssCodeSplit: false, // their order is what src/lab/styles.ts says
     rollupOptions: { input: here('lab.html') },
   },
   server: { proxy: { '/api': 'http://127.0.0.1:8765' } },

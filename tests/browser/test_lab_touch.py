@@ -84,3 +84,20 @@ def test_a_swipe_beside_the_ball_scrolls_the_page(visitor: Visitor) -> None:
 
 def _scrolled(now: float, before: float) -> None:
     assert now > before + 60
+
+
+def test_a_finger_nudges_the_ball(bench: Bench) -> None:
+    before = bench.run()
+    paused = bench.play_past(0.5)
+    bench.page.get_by_role("radio", name="Nudge it").tap()
+    Finger(bench.stage).swipe(bench.stage.ball(), (50.0, 0.0))
+
+    def nudged() -> None:
+        then = before.data.sel(time=paused.time, method="nearest")
+        place, velocity = start(bench)
+        assert place == pytest.approx(then.position.values[:2], abs=1e-6)
+        added = velocity - then.velocity.values[:2]
+        assert added[0] > 0.01
+        assert abs(added[1]) < 0.1 * added[0]
+
+    eventually(bench.page, nudged)

@@ -398,7 +398,7 @@ export interface Api {
   cancel(lane?: string): void
 }
 
-const UNREACHABLE = 'The lab does not answer. Is it still running in its terminal?'
+export const UNREACHABLE = 'The lab does not answer. Is it still running in its terminal?'
 
 /** What the package says is wrong, and apart from it, for each value that is, the rule, what came instead, and the remedy. */
 interface Told extends Refused {

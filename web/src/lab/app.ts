@@ -26,12 +26,17 @@ export interface App {
   toast(text: string, kind?: 'info' | 'error'): void
 }
 
-export interface Page {
+/** A page in the menu; what it is made of comes when it is opened. */
+export interface Entry {
   /** Its word in the hash: "bench", "tour", "holonomy", "compare", "fields". */
   readonly id: string
   readonly title: string
   /** Not in the menu: other pages lead there. */
   readonly aside?: boolean
+  load(): Promise<Page>
+}
+
+export interface Page {
   /** Build the page inside the host; returns how to take it down (dispose viewers, listeners, requests). */
   mount(host: HTMLElement, app: App): () => void
 }

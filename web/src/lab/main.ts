@@ -1,12 +1,5 @@
 /** The lab page: makes the app and shows the page that the address names. */
-import '@fontsource-variable/inter'
-import '@fontsource/jetbrains-mono/400.css'
-import '@fontsource/jetbrains-mono/600.css'
-import './tokens.css'
-import './base.css'
-import './inputs.css'
-import './shell.css'
-import './low.css'
+import './styles'
 import { chosenLanguage, learn } from '../languages'
 import { createApi } from './api'
 import type { App } from './app'
@@ -17,7 +10,6 @@ import { createSettings } from './settings'
 import { createShell, startShell } from './shell'
 import { tellWhileStarting } from './starting'
 import { createStore } from './store'
-import './forced.css'
 
 await learn(chosenLanguage(location.search, navigator.languages))
 const settings = createSettings()

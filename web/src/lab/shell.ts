@@ -1,7 +1,8 @@
 /** What is round every page: header, menu, theme, projector, help, messages, and which page is shown. */
 import { t } from '../languages/translate'
 import { put, say } from '../viewer/elements'
-import type { App, Page } from './app'
+import { UNREACHABLE } from './api'
+import type { App, Entry } from './app'
 import { fill, h, plainly } from './dom'
 import { openHelp } from './help'
 import { type IconName, icon, mark } from './icons'
@@ -51,7 +52,7 @@ export function createShell(body: HTMLElement): Shell {
   }
 }
 
-export function startShell(shell: Shell, app: App, pages: Page[]): void {
+export function startShell(shell: Shell, app: App, pages: Entry[]): void {
   const head = document.querySelector<HTMLElement>('.head')!
   const menued = pages.filter((page) => !page.aside)
   const links = menued.map((page) => h('a', { href: `#/${page.id}`, 'data-page': page.id }, page.title))
@@ -139,8 +140,8 @@ function shortcuts(app: App): void {
   })
 }
 
-function showPages(shell: Shell, app: App, pages: Page[], links: HTMLAnchorElement[]): void {
-  let shown: Page | undefined
+function showPages(shell: Shell, app: App, pages: Entry[], links: HTMLAnchorElement[]): void {
+  let shown: Entry | undefined
   let takeDown: (() => void) | undefined
 
   function show(first = false): void {
@@ -158,10 +159,20 @@ function showPages(shell: Shell, app: App, pages: Page[], links: HTMLAnchorEleme
     document.body.dataset.page = page.id
     shell.main.replaceChildren()
     shell.main.className = `page page-${page.id}`
-    takeDown = page.mount(shell.main, app)
+    void open(page)
     if (!first) {
       shell.main.focus({ preventScroll: true })
       window.scrollTo(0, 0)
+    }
+  }
+
+  async function open(entry: Entry): Promise<void> {
+    const page = await entry.load().catch(() => undefined)
+    if (shown !== entry) return
+    if (page) takeDown = page.mount(shell.main, app)
+    else {
+      shown = undefined // to go there again is to try again
+      fill(shell.main, h('p', { class: 'alert', role: 'alert' }, UNREACHABLE))
     }
   }
   app.router.subscribe(() => show())

@@ -44,6 +44,17 @@ describe('saying a text', () => {
     expect(t('It rolls. It slips.')).toBe('Sie rollt. Sie gleitet.')
   })
 
+  it('is soon done with what it does not have, however long that is and however often it seems to know it', () => {
+    speak('de', german)
+    const links = [' and a ball', ', one on the table', ' to the rim', ' for a disc', ' at rest', ' over the ring']
+    const chained = (count: number) => Array.from({ length: count }, (_, i) => links[i % links.length] + i).join('')
+    const texts = [30, 60, 90, 400, 4000].map((count) => `Somebody wrote of a coin${chained(count)}.`)
+    const began = performance.now()
+    for (const text of texts) expect(t(text).length).toBeGreaterThanOrEqual(text.length)
+    for (const entry of Object.keys(german)) t(`Somebody wrote: ${entry.replace(/\{\w+\}/g, 'one thing')} too`)
+    expect(performance.now() - began).toBeLessThan(20_000) // by one lookup of each part; without, hours
+  })
+
   it('says what is wrong from its parts: the rule, whatever was received, the remedy', () => {
     speak('de', german)
     const told = (key: string, rule: string, received: string, remedy = '') =>

@@ -13,6 +13,7 @@ export type Catalogue = Readonly<Record<string, string>>
 type Values = Readonly<Record<string, string>>
 
 interface Template {
+  fixed: string
   pattern: RegExp
   names: string[]
   said: string
@@ -21,10 +22,13 @@ interface Template {
 const SLOT = /\{(\w+)\}/g
 const TITLE = 'title'
 const MOST = 4000 // texts that are remembered
+const LONG = 1000 // letters, more than which no text has that is put together: what is longer was written by somebody
+const VALUE = 200 // letters, more than which no value has
 
 let entries = new Map<string, string>()
 let templates: Template[] = []
 let known = new Map<string, string>()
+let recognitions = new Map<string, string | undefined>()
 let mark = '.'
 let speaking = 'en'
 
@@ -34,6 +38,7 @@ export function speak(language: string, catalogue: Catalogue): void {
   mark = new Intl.NumberFormat(language).format(0.5).includes(',') ? ',' : '.'
   entries = new Map(Object.entries(catalogue))
   known = new Map()
+  recognitions = new Map()
   const varying = [...entries].filter(([key]) => key.search(SLOT) >= 0)
   const fixed = (key: string) => key.replace(SLOT, '').length
   // What is most particular is tried first.
@@ -49,7 +54,11 @@ function template(key: string, said: string): Template {
   const parts = key.split(SLOT) // fixed, name, fixed, name, ..., fixed
   const pattern = parts.map((part, i) => (i % 2 ? '(.+?)' : part.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'))).join('')
   const either = pattern.replace(/^\p{L}/u, (first) => `[${first.toLowerCase()}${first.toUpperCase()}]`) // a line or not
-  return { pattern: new RegExp(`^${either}$`, 's'), names: parts.filter((_, i) => i % 2), said }
+  // The longest of what does not vary, but for the first letter: most texts are told apart by it.
+  const fixed = parts
+    .map((part, i) => (i % 2 ? '' : i === 0 ? part.slice(1) : part))
+    .reduce((one, other) => (other.length > one.length ? other : one))
+  return { fixed, pattern: new RegExp(`^${either}$`, 's'), names: parts.filter((_, i) => i % 2), said }
 }
 
 /** Say an English text in the language of the page; with values, what stands for its `{names}`. */
@@ -105,9 +114,19 @@ function entry(text: string): string | undefined {
   return entries.get(text) ?? entries.get(other + text.slice(1))
 }
 
+/** What a template makes of a text; found once, since the parts of a text recur in each other. */
 function recognized(text: string): string | undefined {
-  for (const { pattern, names, said } of templates) {
-    const match = pattern.exec(text)
+  if (text.length > LONG) return undefined
+  if (recognitions.has(text)) return recognitions.get(text)
+  const found = takenApart(text)
+  if (recognitions.size >= MOST) recognitions.clear()
+  recognitions.set(text, found)
+  return found
+}
+
+function takenApart(text: string): string | undefined {
+  for (const { fixed, pattern, names, said } of templates) {
+    const match = text.includes(fixed) ? pattern.exec(text) : null
     if (!match) continue
     const values = names.map((name, i) => [name, name === TITLE ? t(match[i + 1]!) : sayable(match[i + 1]!)] as const)
     if (values.some(([, value]) => value === undefined)) continue
@@ -119,6 +138,7 @@ function recognized(text: string): string | undefined {
 
 /** A value as it is said: a number with its unit, or what the catalogue has; undefined of any other words. */
 function sayable(value: string): string | undefined {
+  if (value.length > VALUE) return entry(value)
   return entry(value) ?? recognized(value) ?? (/\p{L}{4}|\p{L}{2,}\s+\p{L}{2}/u.test(value) ? undefined : t(value))
 }
 

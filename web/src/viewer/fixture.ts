@@ -18,25 +18,27 @@ export function packed(
   let offset = 0
   for (const [name, { data, shape }] of Object.entries(columns)) {
     described[name] = { dtype: NAMES.get(data.constructor), shape, offset, unit: 'm' }
-    offset += 8 * Math.ceil(data.byteLength / 8)
+    offset += data.byteLength
   }
-  let text = JSON.stringify({ ...HEADER, ...header, columns: described })
-  while (new TextEncoder().encode(text).length % 8) text += ' '
-  const head = new TextEncoder().encode(text)
+  const head = new TextEncoder().encode(JSON.stringify({ ...HEADER, ...header, columns: described }))
   const blob = new Uint8Array(16 + head.length + offset)
   blob.set(new TextEncoder().encode('TRUNDLE1'))
   new DataView(blob.buffer).setUint32(8, head.length, true)
   blob.set(head, 16)
   let at = 16 + head.length
-  for (const { data } of Object.values(columns)) {
-    blob.set(new Uint8Array(data.buffer, data.byteOffset, data.byteLength), at)
-    at += 8 * Math.ceil(data.byteLength / 8)
+  for (const { data, shape } of Object.values(columns)) {
+    const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength)
+    const width = bytes.length / (shape[0] ?? 1)
+    bytes.forEach((byte, i) => {
+      blob[at + (i % width) * (shape[0] ?? 1) + Math.floor(i / width)] = byte
+    })
+    at += bytes.length
   }
   return blob
 }
 
 const HEADER = {
-  format: 1,
+  format: 2,
   title: 'Ball in a circle, Ω',
   method: 'exact',
   tolerance: 0,

@@ -148,12 +148,15 @@ export interface Scene {
 export const PHASE = { rolling: 0, slipping: 1, flight: 2, resting: 3 } as const
 
 const MAGIC = 'TRUNDLE1'
+const FORMAT = 2
 const START = 16
 const TYPES = { float32: Float32Array, float64: Float64Array, uint32: Uint32Array, uint8: Uint8Array }
 
-/** Read a packed scene. The columns are views of the bytes given, unless these lie askew in memory. */
+/** Read a packed scene. */
 export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
-  const whole = aligned(bytes)
+  const whole = ArrayBuffer.isView(bytes)
+    ? new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)
+    : new Uint8Array(bytes)
   const magic = whole.length < START ? '' : String.fromCharCode(...whole.subarray(0, MAGIC.length))
   if (magic !== MAGIC)
     throw new Error(`A packed scene begins with ${MAGIC}; got ${whole.length} bytes of something else.`)
@@ -161,32 +164,25 @@ export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
   const base = START + length
   if (base > whole.length) throw new Error(`The scene ends within its header: ${whole.length} of ${base} bytes came.`)
   const header = JSON.parse(new TextDecoder().decode(whole.subarray(START, base))) as SceneHeader
-  if (header.format !== 1) throw new Error(`This viewer reads scenes of format 1; got ${header.format}.`)
+  if (header.format !== FORMAT) throw new Error(`This viewer reads scenes of format ${FORMAT}; got ${header.format}.`)
   const columns: Record<string, ColumnArray> = {}
   for (const [name, column] of Object.entries(header.columns)) columns[name] = read(whole, base, name, column)
   if (!columns.time?.length || !columns.position) throw new Error('A scene needs the columns time and position.')
   return { header, columns: columns as unknown as Columns }
 }
 
-/** Typed arrays must start at a multiple of their element's size: copy what does not. */
-function aligned(bytes: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> {
-  if (!ArrayBuffer.isView(bytes)) return new Uint8Array(bytes)
-  const view = new Uint8Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, bytes.byteLength)
-  return view.byteOffset % 8 === 0 ? view : view.slice()
-}
-
-function read(
-  whole: Uint8Array<ArrayBuffer>,
-  base: number,
-  name: string,
-  { dtype, shape, offset }: ColumnHeader,
-): ColumnArray {
-  const Type = TYPES[dtype]
-  const count = shape.reduce((product, side) => product * side, 1)
-  const start = base + offset
-  const end = start + count * Type.BYTES_PER_ELEMENT
+/** A column: of its rows all first bytes stand first, then all second bytes, and so on. */
+function read(whole: Uint8Array, base: number, name: string, { dtype, shape, offset }: ColumnHeader): ColumnArray {
+  const column = new TYPES[dtype](shape.reduce((product, side) => product * side, 1))
+  const bytes = new Uint8Array(column.buffer)
+  const begin = base + offset
+  const end = begin + bytes.length
   if (end > whole.length) throw new Error(`The column ${name} ends at byte ${end} of ${whole.length}.`)
-  return new Type(whole.buffer, whole.byteOffset + start, count)
+  const rows = shape[0] ?? 1
+  const width = bytes.length / rows
+  for (let plane = 0, from = begin; plane < width; plane++)
+    for (let to = plane; to < bytes.length; to += width) bytes[to] = whole[from++]!
+  return column
 }
 
 /** Whether two columns hold the same numbers; two that are absent may stand for different things. */

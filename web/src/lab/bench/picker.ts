@@ -2,7 +2,7 @@
 import { t } from '../../languages/translate'
 import { say } from '../../viewer/elements'
 import type { Api, ScenarioEntry } from '../api'
-import { fill, h } from '../dom'
+import { fill, h, plainly } from '../dom'
 import { icon } from '../icons'
 import { pictureOf } from '../pictures'
 import { LEVELS } from '../texts'
@@ -62,7 +62,7 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
 
   let entries: ScenarioEntry[] = []
   try {
-    entries = await api.scenarios()
+    entries = (await api.scenarios()).map((entry) => ({ ...entry, summary: plainly(entry.summary) }))
   } catch (error) {
     say(count, '')
     fill(list, h('p', { class: 'empty', role: 'alert' }, error instanceof Error ? error.message : String(error)))
@@ -84,7 +84,7 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
         { class: 'picker-card', type: 'button', onclick: take, 'data-scenario': entry.name },
         pictureOf(entry.name),
         h('strong', {}, entry.title),
-        h('span', { class: 'picker-summary' }, firstSentence(t(entry.summary.replaceAll('`', '')))),
+        h('span', { class: 'picker-summary' }, firstSentence(t(entry.summary))),
         h(
           'span',
           { class: 'picker-tags' },

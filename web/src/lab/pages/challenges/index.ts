@@ -4,17 +4,12 @@ import type { Challenge } from '../../api'
 import type { App, Page } from '../../app'
 import { cleanup, fill, h } from '../../dom'
 import { readNotebook } from '../../notebook'
-import { CHALLENGE, LEVELS, REPORT } from '../../texts'
+import { CHALLENGE, LEVELS } from '../../texts'
 import { told } from '../parts/stage'
 import { mountChallenge } from './challenge'
 import { drawReport } from './report'
-import '../pages.css'
-import '../tour/tour.css'
-import './challenges.css'
 
 export const challenges: Page = {
-  id: 'challenges',
-  title: CHALLENGE.title,
   mount(host, app) {
     const undo = cleanup()
     let takeDown: () => void = () => {}
@@ -96,9 +91,6 @@ function list(host: HTMLElement, all: Challenge[]): void {
 }
 
 export const report: Page = {
-  id: 'report',
-  title: REPORT.title,
-  aside: true,
   mount(host, app: App) {
     void drawReport(host, app)
     return () => {}

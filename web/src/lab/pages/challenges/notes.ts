@@ -7,9 +7,6 @@ import { told } from '../parts/stage'
 import { TEXTS } from '../tour/texts'
 
 export const notes: Page = {
-  id: 'notes',
-  title: NOTES.title,
-  aside: true,
   mount(host, app) {
     const challenges = h('div', {})
     fill(

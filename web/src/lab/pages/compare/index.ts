@@ -9,14 +9,10 @@ import { slider } from '../parts/controls'
 import { finding, headingRate } from '../parts/measure'
 import { createStage, playUnlessCalm } from '../parts/stage'
 import { CONTESTANTS, type Contestant, fractionOf, type Table } from './bodies'
-import '../pages.css'
-import './compare.css'
 
 type Found = Map<string, Scene>
 
 export const compare: Page = {
-  id: 'compare',
-  title: 'Compare',
   mount(host, app) {
     const undo = cleanup()
     const stage = createStage(app, { label: 'Several balls on one turntable' })

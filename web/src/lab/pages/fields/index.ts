@@ -13,8 +13,6 @@ import { leaning } from '../parts/scenarios'
 import { type ChargeHeader, chargeOf } from './charge'
 import { dictionary, type Entry } from './dictionary'
 import { createPair } from './pair'
-import '../pages.css'
-import './fields.css'
 
 interface Setting {
   rate: number
@@ -28,8 +26,6 @@ const STARTS = [
 ] as const
 
 export const fields: Page = {
-  id: 'fields',
-  title: 'Crossed fields',
   mount(host, app) {
     const undo = cleanup()
     let setting: Setting = { rate: 33.3, tilt: 0.2, start: 'down' }

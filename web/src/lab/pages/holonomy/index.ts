@@ -5,8 +5,6 @@ import { cleanup, fill, h } from '../../dom'
 import { mountHand } from './hand'
 import { mountLoop } from './loop'
 import { mountTwoOrders } from './two-orders'
-import '../pages.css'
-import './holonomy.css'
 
 type View = (host: HTMLElement, app: App) => () => void
 
@@ -17,8 +15,6 @@ const VIEWS: readonly { id: string; title: string; mount: View }[] = [
 ]
 
 export const holonomy: Page = {
-  id: 'holonomy',
-  title: 'Holonomy',
   mount(host, app) {
     const undo = cleanup()
     const place = h('div', { class: 'holonomy-view' })

@@ -12,15 +12,11 @@ import { type Asked, askedBy, ofShipped, paramsOf, pointOf } from './asked'
 import { createComputing, type State } from './computing'
 import { createForm, firstSpans } from './form'
 import { createPicture } from './picture'
-import '../pages.css'
-import './maps.css'
 
 const OWN = '(bench)'
 const CALM = 400 // ms, after which what is pointed at is told
 
 export const maps: Page = {
-  id: 'maps',
-  title: 'Maps',
   mount(host, app) {
     const undo = cleanup()
     const leaving = new AbortController()

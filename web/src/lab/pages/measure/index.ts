@@ -25,9 +25,6 @@ import { createPlot } from './plot'
 import { createReading, type How } from './reading'
 import { marked, report } from './report'
 import { createShowing } from './showing'
-import '../pages.css'
-import '../maps/maps.css'
-import './measure.css'
 
 const BENCH = '(bench)'
 const OF_EXAMPLE = '(example)'
@@ -54,8 +51,6 @@ interface Given {
 }
 
 export const measure: Page = {
-  id: 'measure',
-  title: 'Measure',
   mount(host, app) {
     const undo = cleanup()
     const leaving = new AbortController()

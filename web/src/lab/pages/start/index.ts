@@ -5,13 +5,8 @@ import type { Page } from '../../app'
 import { fill, h } from '../../dom'
 import { pictureOf } from '../../pictures'
 import { SIX, START } from '../../texts'
-import '../pages.css'
-import './start.css'
 
 export const start: Page = {
-  id: 'start',
-  title: START.title,
-  aside: true,
   mount(host) {
     fill(
       host,

@@ -19,8 +19,6 @@ import { mountPush } from './push'
 import { type StepText, TEXTS } from './texts'
 import { mountTilt } from './tilt'
 import { mountTurntable } from './turntable'
-import '../pages.css'
-import './tour.css'
 
 const MOUNTS: readonly StepMount[] = [
   mountCylinder,
@@ -40,8 +38,6 @@ export function stepOf(path: readonly string[]): number {
 }
 
 export const tour: Page = {
-  id: 'tour',
-  title: 'Tour',
   mount(host, app) {
     const undo = cleanup()
     let step = 0
