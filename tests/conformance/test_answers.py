@@ -147,6 +147,7 @@ def test_a_body_that_stays_is_an_answer() -> None:
     """An engine may find that nothing moves: it is wrong, and no bad answer."""
     good = good_answer(CASES["incline"])
     stays = {part: np.repeat(np.array(good[part])[:1], 201, axis=0).tolist() for part in PARTS}
+    stays["orientation"] = np.float32([[[1.0, 1e-7 * (i % 3), 0.0, 0.0]] for i in range(201)]).tolist()  # it trembles
     assert read_answer(json.dumps(good | stays), CASES["incline"], 1).outcome == "ok"
 
 

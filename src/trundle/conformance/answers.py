@@ -90,7 +90,7 @@ def read_answer(line: str, case: Case, number: int, inputs: Sequence[Input] = ()
     try:
         motion = _motion(told, case)
         _check_start(motion, case)
-        _check_rates(motion)
+        _check_rates(motion, extent(case))
         _check_axes(motion, case)
         seconds = float(_array({"seconds": float("nan")} | told, "seconds", ()))
         return Answer(OK, "", motion, seconds, engine, _derivatives(told, inputs) if inputs else {})
@@ -194,18 +194,21 @@ def _check_start(motion: Motion, case: Case) -> None:
         raise _BadAnswerError(f"`orientation` at the start is wrong: {remedy}")
 
 
-def _check_rates(motion: Motion) -> None:
+def _check_rates(motion: Motion, size: float) -> None:
     """Name velocities that the positions contradict, and angular velocities that the orientations do."""
     step, q = motion.time[1] - motion.time[0], motion.orientation
+    least = _LOOSE / motion.time[-1]  # what stays may tremble in its last digits
     back, Omega = q * [1, -1, -1, -1], motion.angular_velocity
     moved, turned, turned_back = np.diff(motion.position, axis=0), _turns(q), _turns(back)
     turned[np.linalg.norm(turned, axis=-1) > _LARGE_TURN] = np.nan  # it may have been the other way round
-    _check_rate("velocity", "the position changes", moved / step, motion.velocity, _LENGTHS, {})
+    _check_rate("velocity", "the position changes", moved / step, motion.velocity, _LENGTHS, {}, least * size)
     others = {
         "it is in the axes of the body": (turned / step, in_body_axes(back, Omega)),
         "`orientation` turns from space to body": (turned_back / step, Omega),
     }
-    _check_rate("angular_velocity", "the body turns", turned / step, Omega, {"it is in degrees/s": 180 / np.pi}, others)
+    _check_rate(
+        "angular_velocity", "the body turns", turned / step, Omega, {"it is in degrees/s": 180 / np.pi}, others, least
+    )
 
 
 def _check_rate(
@@ -215,6 +218,7 @@ def _check_rate(
     told: Array,
     units: Mapping[str, float],
     others: Mapping[str, tuple[Array, Array]],
+    least: float,
 ) -> None:
     """Name what a rate is, if another reading of it agrees with what is seen, and it does not itself."""
     size = np.linalg.norm(seen, axis=-1)
@@ -222,6 +226,8 @@ def _check_rate(
     if known.size < _FEWEST:
         return
     fastest, said = known.max(), np.linalg.norm(told, axis=-1).max()
+    if max(fastest, said) < least:
+        return
     if min(fastest, said) < _STILL * max(fastest, said):
         raise _BadAnswerError(f"`{name}` is not how {what}: {'it is zero' if said < fastest else 'nothing changes'}")
     tells = size > _SLOW * fastest
