@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -9,10 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from trundle.conformance import cases, running
+from trundle.conformance import cases
 from trundle.conformance.answers import read_answer
-from trundle.conformance.case import in_body_axes
+from trundle.conformance.case import PARTS, in_body_axes
 from trundle.conformance.measuring import errors_of
 from trundle.conformance.running import Adapter
 
@@ -87,6 +89,68 @@ def test_turning_that_the_orientations_contradict_is_named() -> None:
     assert "is not how the body turns: it is in the axes of the body" in answer.message
 
 
+def flipped() -> list[Any]:
+    """All ways but the right one to take three axes for another, each to the left or to the right."""
+    signs = [np.diag(row) for row in itertools.product((1, -1), repeat=3)]
+    return [each[list(axes)] for each in signs for axes in itertools.permutations(range(3))][1:]
+
+
+@pytest.mark.parametrize("name", ["billiard-swerve", "dome", "incline"])
+def test_no_array_in_other_axes_is_taken(name: str) -> None:
+    """Alone, or all of them together where the start tells it not, because everything is at rest."""
+    good = good_answer(CASES[name])
+    for axes in flipped():
+        moved = {part: np.array(good[part]) @ axes for part in ("position", "velocity", "angular_velocity")}
+        pseudo = np.linalg.det(axes) * axes
+        turned = Rotation.from_quat(np.array(good["orientation"])[:, 0], scalar_first=True).as_matrix()
+        turned = Rotation.from_matrix(axes.T @ turned @ axes).as_quat(scalar_first=True)[:, None]
+        together = {**moved, "angular_velocity": moved["angular_velocity"] @ axes.T @ pseudo, "orientation": turned}
+        for change in (*({part: array} for part, array in moved.items()), together):
+            if all(close(part, array, good[part]) for part, array in change.items()):
+                continue  # it looks the same from there
+            told = good | {part: array.tolist() for part, array in change.items()}
+            answer = read_answer(json.dumps(told), CASES[name], 1)
+            assert answer.outcome == "bad answer", (axes, list(change))
+
+
+def close(part: str, array: Any, wanted: Any) -> bool:
+    apart = [np.abs(array - way * np.array(wanted)).max(-1) for way in ((1, -1) if part == "orientation" else (1,))]
+    return bool((np.min(apart, axis=0) < 1e-6).all())
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (altered("velocity", lambda v: 1e3 * v), "`velocity` is not how the position changes: it is in mm/s"),
+        (altered("velocity", lambda v: 0 * v), "`velocity` is not how the position changes: it is zero"),
+        (altered("angular_velocity", np.degrees), "it is in degrees/s"),
+        (altered("angular_velocity", lambda w: 0 * w), "it is zero"),
+        (altered("orientation", lambda q: 0 * q + [1, 0, 0, 0]), "is not how the body turns: nothing changes"),
+        (
+            altered("orientation", lambda q: q * [1, -1, -1, -1]),
+            "is not how the body turns: `orientation` turns from space to body",
+        ),
+        (altered("position", lambda x: x[..., [1, 0, 2]]), "is not how the position changes: it is (y, x, z)"),
+        (
+            lambda told: {**told, **{k: np.array(told[k])[..., [1, 0, 2]].tolist() for k in ("position", "velocity")}},
+            "`position` is in other axes: it is (y, x, z)",
+        ),
+    ],
+)
+def test_what_a_start_at_rest_does_not_tell_is_named(change: Change, words: str) -> None:
+    answer = read_answer(json.dumps(change(good_answer(CASES["incline"]))), CASES["incline"], 1)
+    assert answer.outcome == "bad answer"
+    assert words in answer.message
+
+
+def test_a_body_that_stays_is_an_answer() -> None:
+    """An engine may find that nothing moves: it is wrong, and no bad answer."""
+    good = good_answer(CASES["incline"])
+    stays = {part: np.repeat(np.array(good[part])[:1], 201, axis=0).tolist() for part in PARTS}
+    stays["orientation"] = np.float32([[[1.0, 1e-7 * (i % 3), 0.0, 0.0]] for i in range(201)]).tolist()  # it trembles
+    assert read_answer(json.dumps(good | stays), CASES["incline"], 1).outcome == "ok"
+
+
 @pytest.mark.parametrize("name", ["billiard-draw", "coin-in-a-circle", "hinged-turntable", "pushed-box"])
 def test_a_good_answer_is_taken_and_measured(name: str) -> None:
     case = CASES[name]
@@ -149,9 +213,7 @@ def test_a_program_may_end_after_its_answer(program: Make) -> None:
             assert (answer.outcome, answer.message) == ("cannot", f"step {dt}")
 
 
-def test_one_that_is_late_is_killed_and_started_again(
-    program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_that_is_late_is_killed_and_started_again(program: Make, tmp_path: Path) -> None:
     """It waits for ever on the first task, and answers any later one."""
     mark = tmp_path / "mark"
     body = (
@@ -159,14 +221,13 @@ def test_one_that_is_late_is_killed_and_started_again(
         "    time.sleep(0 if there else 3600)\n"
         '    say(cannot="it is tired")'
     )
-    monkeypatch.setattr(running, "STARTING", 0.0)
-    with Adapter(program(body), limit=0.01) as adapter:
+    with Adapter(program(body), limit=0.01, starting=0.0) as adapter:
         while not mark.exists():  # it may be ended before it has begun to wait
             late = adapter.answer(DRAW, 1e-2)
             assert late.outcome == "too slow"
             assert late.message == f"no answer within {adapter.limit:g} s"
             adapter.limit *= 2
-        monkeypatch.setattr(running, "STARTING", 60.0)
+        adapter.limit = 60.0
         assert adapter.answer(DRAW, 1e-2).outcome == "cannot"
 
 

@@ -41,6 +41,7 @@ def test_an_engine_is_tested_on_each_case(tmp_path: Path) -> None:
         text=True,
         check=False,
     ).stdout
-    assert "1 failed, 1 passed, 13 skipped" in told
+    others = len(tr.conformance.cases()) - 2
+    assert f"1 failed, 1 passed, {others} skipped" in told
     assert "no tippe-top" in told
     assert "bad answer: `position` is missing" in told

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import permutations, product
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,21 @@ from .case import END, PARTS, Array, Case, Input, Motion, extent, in_body_axes
 OK, CANNOT, FAILED, NOT_FINITE, BAD = "ok", "cannot", "failed", "not finite", "bad answer"
 TOO_SLOW, NOT_INSTALLED = "too slow", "not installed"
 _LOOSE = 1e-3  # of a unit quaternion's length, and of a start relative to its size: float32 is far inside
-_SMALL_TURN = 0.5  # rad between samples: up to there differences of orientations tell Ω
-_AGREES, _DISAGREES = 0.1, 0.5  # of the rate of turning, in the middle of all samples
+_LARGE_TURN = 2.0  # rad between samples: beyond it differences of orientations do not tell Ω
+_SLOW, _FEWEST = 0.05, 10  # share of the highest rate from which a sample tells, and how many must
+_DISAGREES, _AGREES = 0.02, 0.1  # of a rate, in the middle of all samples; share of that which another reading leaves
+_ELSEWHERE = 0.5  # of the way
+_STILL = 1e-6  # of the other rate: float32 moves more
+_LENGTHS = {"it is in mm/s": 1e3, "it is in cm/s": 1e2, "it is in km/s": 1e-3}
+# What may stand in the place of (x, y, z), with the matrix that takes it back; few signs first.
+_AXES = {
+    f"({', '.join(sign + axis for sign, axis in zip(signs, axes, strict=True))})": np.array(
+        [[(-1.0 if sign else 1.0) * (axis == own) for own in "xyz"] for sign, axis in zip(signs, axes, strict=True)]
+    )
+    for signs in sorted(product(("", "-"), repeat=3), key=lambda signs: sum(map(len, signs)))
+    for axes in permutations("xyz")
+    if any(signs) or axes != tuple("xyz")
+}
 
 
 @dataclass(frozen=True)
@@ -76,7 +90,8 @@ def read_answer(line: str, case: Case, number: int, inputs: Sequence[Input] = ()
     try:
         motion = _motion(told, case)
         _check_start(motion, case)
-        _check_turning(motion)
+        _check_rates(motion, extent(case))
+        _check_axes(motion, case)
         seconds = float(_array({"seconds": float("nan")} | told, "seconds", ()))
         return Answer(OK, "", motion, seconds, engine, _derivatives(told, inputs) if inputs else {})
     except FloatingPointError as error:
@@ -158,10 +173,12 @@ def _check_start(motion: Motion, case: Case) -> None:
     given = {name: np.array([body[name] for body in bodies]) for name in PARTS}
     for name in ("position", "velocity", "angular_velocity"):
         begun, size = getattr(motion, name)[0], max(1.0, float(np.abs(given[name]).max()))
-        off = float(np.abs(begun - given[name]).max())
+        apart = np.abs(begun - given[name])
+        off = float(apart.max())
         if name == "position":  # a contact that is a spring starts in balance, a little lower
             size = 0.5 * extent(case) / _LOOSE
-        if off <= _LOOSE * size:
+            apart = apart * [5.0, 5.0, 1.0]
+        if apart.max() <= _LOOSE * size:
             continue
         turned = in_body_axes(given["orientation"], given[name])
         if name == "angular_velocity" and np.abs(begun - turned).max() <= _LOOSE * size:
@@ -177,34 +194,79 @@ def _check_start(motion: Motion, case: Case) -> None:
         raise _BadAnswerError(f"`orientation` at the start is wrong: {remedy}")
 
 
-def _check_turning(motion: Motion) -> None:
-    """Name axes of the angular velocity that the orientations contradict, where samples are close enough to tell."""
-    q, Omega = motion.orientation, motion.angular_velocity
+def _check_rates(motion: Motion, size: float) -> None:
+    """Name velocities that the positions contradict, and angular velocities that the orientations do."""
+    step, q = motion.time[1] - motion.time[0], motion.orientation
+    least = _LOOSE / motion.time[-1]  # what stays may tremble in its last digits
+    back, Omega = q * [1, -1, -1, -1], motion.angular_velocity
+    moved, turned, turned_back = np.diff(motion.position, axis=0), _turns(q), _turns(back)
+    turned[np.linalg.norm(turned, axis=-1) > _LARGE_TURN] = np.nan  # it may have been the other way round
+    _check_rate("velocity", "the position changes", moved / step, motion.velocity, _LENGTHS, {}, least * size)
+    others = {
+        "it is in the axes of the body": (turned / step, in_body_axes(back, Omega)),
+        "`orientation` turns from space to body": (turned_back / step, Omega),
+    }
+    _check_rate(
+        "angular_velocity", "the body turns", turned / step, Omega, {"it is in degrees/s": 180 / np.pi}, others, least
+    )
+
+
+def _check_rate(
+    name: str,
+    what: str,
+    seen: Array,
+    told: Array,
+    units: Mapping[str, float],
+    others: Mapping[str, tuple[Array, Array]],
+    least: float,
+) -> None:
+    """Name what a rate is, if another reading of it agrees with what is seen, and it does not itself."""
+    size = np.linalg.norm(seen, axis=-1)
+    known = size[np.isfinite(size)]
+    if known.size < _FEWEST:
+        return
+    fastest, said = known.max(), np.linalg.norm(told, axis=-1).max()
+    if max(fastest, said) < least:
+        return
+    if min(fastest, said) < _STILL * max(fastest, said):
+        raise _BadAnswerError(f"`{name}` is not how {what}: {'it is zero' if said < fastest else 'nothing changes'}")
+    tells = size > _SLOW * fastest
+    if tells.sum() < _FEWEST:
+        return
+
+    def apart(seen: Array, told: Array) -> float:
+        middle = 0.5 * (told[1:] + told[:-1])
+        return float(np.median(np.linalg.norm(seen - middle, axis=-1)[tells] / size[tells]))
+
+    itself = apart(seen, told)
+    tries = {**others, "its sign is wrong": (seen, -told)}
+    tries |= {words: (seen, told / unit) for words, unit in units.items()}
+    tries |= {f"it is {words}": (seen, told @ matrix) for words, matrix in _AXES.items()}
+    for words, reading in tries.items():
+        if itself > _DISAGREES and apart(*reading) < _AGREES * itself:
+            raise _BadAnswerError(f"`{name}` is not how {what}: {words}")
+
+
+def _check_axes(motion: Motion, case: Case) -> None:
+    """Name axes that a start at rest does not tell: the motion is the exact one in others."""
+    if any(np.any(body[name]) for body in case.situation()["bodies"] for name in ("velocity", "angular_velocity")):
+        return
+    exact, found = (each.position - each.position[:1] for each in (case.exact(), motion))
+    size = np.abs(exact).max()
+    apart = np.abs(found - exact).max()
+    for words, matrix in _AXES.items():
+        if apart > _ELSEWHERE * size and np.abs(found @ matrix - exact).max() < _AGREES * apart:
+            raise _BadAnswerError(f"`position` is in other axes: it is {words}")
+
+
+def _turns(q: Array) -> Array:
+    """Return the turn from each orientation to the next as a vector along its axis, rad."""
     w, u = q[..., :1], q[..., 1:]
-    step = motion.time[1] - motion.time[0]
-    # Twice the vector part of q(t + h) q(t)* is Ω h between the samples, for a small turn.
     dw = (q[1:] * q[:-1]).sum(-1, keepdims=True)
     dv = w[:-1] * u[1:] - w[1:] * u[:-1] - np.cross(u[1:], u[:-1])
-    seen = 2 * dv * np.sign(dw) / step
-    middle = 0.5 * (Omega[1:] + Omega[:-1])
-    size = np.linalg.norm(middle, axis=-1)
-    tells = (size * step < _SMALL_TURN) & (size > _LOOSE / step)
-    if tells.sum() < 10:
-        return
-
-    def apart(other: Array) -> float:
-        return float(np.median((np.linalg.norm(seen - other, axis=-1) / np.maximum(size, 1e-30))[tells]))
-
-    if apart(middle) < _DISAGREES:
-        return
-    tries: dict[str, Callable[[Array], Array]] = {
-        "it is in the axes of the body": lambda x: in_body_axes(q[1:] * [1, -1, -1, -1], x),
-        "its sign is wrong": lambda x: -x,
-        "it is in degrees a second": np.radians,
-    }
-    for words, change in tries.items():
-        if apart(change(middle)) < _AGREES:
-            raise _BadAnswerError(f"`angular_velocity` is not how the body turns: {words}")
+    sine = np.linalg.norm(dv, axis=-1, keepdims=True)
+    turns: Array = np.sign(dw) * dv * 2 * np.arctan2(sine, np.abs(dw)) / sine.clip(1e-300)
+    return turns
 
 
 def _apart(p: Array, q: Array) -> float:

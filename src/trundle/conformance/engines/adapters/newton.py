@@ -41,7 +41,7 @@ def run(task: Task) -> Task:
     states, control, contacts = [model.state(), model.state()], model.control(), model.contacts()
     _start(newton, model, states[0], task, bodies)
     pushed = [(body, told["force"]) for body, told in zip(bodies, task["bodies"], strict=True) if any(told["force"])]
-    forces = states[0].body_f.numpy()
+    forces = states[0].body_f.numpy().copy()  # it shows the state itself, which each step clears
     for body, force in pushed:
         forces[body, :3] = force
 
