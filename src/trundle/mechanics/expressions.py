@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -126,8 +127,10 @@ def is_formula(text: Any, variables: tuple[str, ...] = ("t",)) -> bool:
     >>> is_formula("0.1*sin(t)"), is_formula("0.1 N"), is_formula("3 t")
     (True, False, False)
     """
-    if not isinstance(text, str) or len(text) > _LONGEST:
+    if not isinstance(text, str):
         return False
+    if len(text) > _LONGEST:  # too long to be parsed: its reader says so
+        return not {*variables, *FUNCTIONS}.isdisjoint(re.findall(r"[A-Za-z_]\w*", text))
     try:
         names = [node.id for node in ast.walk(ast.parse(text.strip(), mode="eval")) if isinstance(node, ast.Name)]
     except (SyntaxError, ValueError, MemoryError, RecursionError):

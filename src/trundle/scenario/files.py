@@ -122,7 +122,7 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
 
 
 def _too_large(shown: str) -> ScenarioError:
-    return ScenarioError("scenario", "must be a text of at most 1 MiB", shown, "Is this a scenario file?")
+    return ScenarioError("scenario", "must be a text of at most 1 MiB", "more", "Is this a scenario file?", shown)
 
 
 def _no_such(shown: str) -> ScenarioError:
