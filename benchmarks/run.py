@@ -32,6 +32,7 @@ NAMES = (
     "fields",
     "members",
     "sweeps",
+    "engines",
     "lab_load",
     "lab_page",
 )
