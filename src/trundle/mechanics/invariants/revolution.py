@@ -25,6 +25,7 @@ _NEAREST = 1e-4  # that the centre may come to the axis, as a share of its large
 _ON_AXIS = 1e-100  # of the radius: nearer, the squares of what is worked out vanish
 _TOLERANCE = 1e-13
 _STEPS = 48  # of the meridian's stretch at least: its dense output is then as good as its steps
+_BESIDE = 1e-13  # of a contact's distance from the origin, from the surface: rounding
 _BEGIN = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)  # way from the start, solutions by rows, the one that starts at zero
 _WIDER = 8  # times that the stretch is widened, each time to twice what it was
 
@@ -52,9 +53,18 @@ class _Meridian:
         self.share, self.rate = k / (1 + k), float(system.support.motion.steady_rate or 0.0)
         first = int(np.argmax(centre <= (1 + 1e-6) * centre.min()))  # of those as near, the first
         self.least = 0.5 * float(centre[first])  # of the centre from the axis, where the equation is singular
-        self.start = (float(distance[first]), float(height[first]))
+        self.start = self._on_surface(Vector(float(distance[first]), 0.0, float(height[first])))
         self.out, self.up = distance - self.start[0], height - self.start[1]
         self.size = float(np.hypot(self.out, self.up).max())
+
+    def _on_surface(self, p: Vector) -> tuple[float, float]:
+        """Return where on the surface a contact is meant to be: one that is measured may lie beside it."""
+        for _ in range(3):
+            step = self.surface.step_onto(p)
+            if step.norm() <= _BESIDE * p.norm():
+                break
+            p += step
+        return float(p.x), float(p.z)
 
     def contact(self, y: Any) -> Vector:
         """Return the contact so far away from the start."""
@@ -140,7 +150,7 @@ def _both(solutions: tuple[Any, Any], sigma: Any) -> Any:
 
 
 def _pair(system: RollingSystem, at: Record) -> list[Any]:
-    """Return the terms of ℓ and w carried along the meridian to the latitude where the centre is nearest to the axis.
+    """Return the terms of ℓ and w carried along the meridian to the latitude of the record's first contact.
 
     None where the centre comes to the axis, at which the equation along the meridian is singular.
     """
@@ -160,6 +170,9 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
     columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
     columns += [-inverse[:, 0] * turned[0], -inverse[:, 1] * turned[1]]
+    first = np.array([[A[0], B[0]], [C[0], D[0]]])
+    columns = [first @ column for column in columns]
+    columns.append(np.outer([turned[0][0], turned[1][0]], np.ones_like(distance)))
     reach = float(distance[0])  # makes both angular momenta, per mass
     return [(column * np.array([[1.0], [reach]])).T.reshape(*shape, 2) for column in columns]
 
