@@ -13,6 +13,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -210,12 +211,14 @@ class Child:
 
 def _place(error: BaseException) -> str:
     """Return which error came from where: the innermost function of trundle's."""
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if "/trundle/" in frame.filename]
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename.startswith(_PACKAGE)]
     where = f"{_short(frames[-1].filename)}:{frames[-1].name}" if frames else "outside"
     return f"{type(error).__name__} in {where}: {_general(str(error))}"
 
 
-_FRAME = re.compile(r'File "([^"]*/trundle/[^"]*)", line \d+ in (\S+)')
+# Not any folder of that name: a clone may be called so.
+_PACKAGE = str(Path(next(iter(find_spec("trundle").submodule_search_locations)))) + os.sep  # type: ignore[union-attr, arg-type]
+_FRAME = re.compile(rf'File "({re.escape(_PACKAGE)}[^"]*)", line \d+ in (\S+)')
 
 
 def _innermost(stack: str) -> str:
@@ -232,7 +235,7 @@ def _stage(stack: str) -> str:
 
 
 def _short(file: str) -> str:
-    return file.rpartition("/trundle/")[2]
+    return file.removeprefix(_PACKAGE)
 
 
 # --- many of them -----------------------------------------------------------------------------------------
