@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 import trundle as tr
 
@@ -150,3 +150,31 @@ def test_the_balls_may_be_told_to_roll_before_their_ways_are_computed(visitor: V
     page.get_by_role("radio", name="Two east, one north").check()
     page.get_by_role("button", name="Roll both").click()
     eventually(page, lambda: points(page, rolled("EEN").north_pole))
+
+
+COUNTING = """() => {
+    const create = document.createElement.bind(document)
+    window.canvases = 0
+    document.createElement = (tag, ...rest) => { canvases += tag === 'canvas'; return create(tag, ...rest) }
+}"""
+
+
+def test_there_and_back_while_a_page_is_fetched_builds_it_once(visitor: Visitor) -> None:
+    def canvases(*routes: str) -> int:
+        page = visitor.open("#/", drawn=False)
+        page.evaluate(COUNTING)
+        fetched: list[Route] = []
+        page.route("**/assets/*.js", lambda route: fetched.append(route))
+        for route in routes:
+            page.evaluate("route => { location.hash = route }", route)
+            page.wait_for_function("route => document.body.dataset.page === (route.slice(2) || 'start')", arg=route)
+        page.wait_for_timeout(500)
+        assert fetched
+        page.route("**/assets/*.js", lambda route: route.continue_())  # they come when all have gone there and back
+        for one in fetched:
+            one.continue_()
+        expect(page.locator(".holonomy-view canvas")).not_to_have_count(0)
+        page.wait_for_timeout(500)
+        return int(page.evaluate("canvases"))
+
+    assert canvases("#/holonomy", "#/", "#/holonomy") == canvases("#/holonomy") > 0

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from playwright.sync_api import expect
 
 import trundle as tr
@@ -38,6 +39,15 @@ def start(bench: Bench) -> tuple[np.ndarray, np.ndarray]:
     """Position and velocity, m and m/s, at the start of the scenario that the address holds."""
     state = tr.Scenario.read(bench.scenario()).start_state()
     return np.array(state.position[:2]), np.array(state.velocity[:2])
+
+
+def is_nudged_along_x(bench: Bench, then: xr.Dataset) -> None:
+    """The start is where a run was then, with some velocity along x more."""
+    place, velocity = start(bench)
+    assert place == pytest.approx(then.position.values[:2], abs=1e-6)
+    added = velocity - then.velocity.values[:2]
+    assert added[0] > 0.01
+    assert abs(added[1]) < 0.1 * added[0]
 
 
 def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
@@ -162,11 +172,7 @@ def test_a_nudge_restarts_from_the_state_that_is_shown(bench: Bench) -> None:
     def nudged() -> None:
         tables = bench.scenario()
         then = before.data.sel(time=paused.time, method="nearest")
-        place, velocity = start(bench)
-        assert place == pytest.approx(then.position.values[:2], abs=1e-6)
-        added = velocity - then.velocity.values[:2]
-        assert added[0] > 0.01
-        assert abs(added[1]) < 0.1 * added[0]
+        is_nudged_along_x(bench, then)
         lies = np.array(tables["start"]["orientation"])
         assert abs(lies @ then.orientation.values) == pytest.approx(1.0, abs=1e-6)
         assert tables["start"]["spin"] == pytest.approx(float(then.angular_velocity.values[2]), abs=1e-5)

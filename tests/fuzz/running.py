@@ -217,7 +217,7 @@ def _place(error: BaseException) -> str:
 
 
 # Not any folder of that name: a clone may be called so.
-_PACKAGE = str(Path(next(iter(find_spec("trundle").submodule_search_locations)))) + os.sep  # type: ignore[union-attr, arg-type]
+_PACKAGE = f"{Path(find_spec('trundle').origin).parent}{os.sep}"  # type: ignore[union-attr, arg-type]
 _FRAME = re.compile(rf'File "({re.escape(_PACKAGE)}[^"]*)", line \d+ in (\S+)')
 
 

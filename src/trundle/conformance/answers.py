@@ -177,7 +177,7 @@ def _check_start(motion: Motion, case: Case) -> None:
         off = float(apart.max())
         if name == "position":  # a contact that is a spring starts in balance, a little lower
             size = 0.5 * extent(case) / _LOOSE
-            apart = apart * [5.0, 5.0, 1.0]
+            apart = apart * [5.0, 5.0, 1.0]  # but not aside
         if apart.max() <= _LOOSE * size:
             continue
         turned = in_body_axes(given["orientation"], given[name])

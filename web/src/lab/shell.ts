@@ -143,6 +143,7 @@ function shortcuts(app: App): void {
 function showPages(shell: Shell, app: App, pages: Entry[], links: HTMLAnchorElement[]): void {
   let shown: Entry | undefined
   let takeDown: (() => void) | undefined
+  let visit = 0
 
   function show(first = false): void {
     const page = pages.find((one) => one.id === app.route.page) ?? pages[0]
@@ -167,8 +168,9 @@ function showPages(shell: Shell, app: App, pages: Entry[], links: HTMLAnchorElem
   }
 
   async function open(entry: Entry): Promise<void> {
+    const mine = ++visit
     const page = await entry.load().catch(() => undefined)
-    if (shown !== entry) return
+    if (mine !== visit) return // somebody has gone on, perhaps there and back
     if (page) takeDown = page.mount(shell.main, app)
     else {
       shown = undefined // to go there again is to try again

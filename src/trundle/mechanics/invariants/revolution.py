@@ -70,6 +70,11 @@ class _Meridian:
         """Return the contact so far away from the start."""
         return Vector(self.start[0] + y[0], 0.0 * y[0], self.start[1] + y[1])
 
+    def off_axis(self, y: Any) -> float:
+        """Return by how much the centre is further from the axis than it may come."""
+        p = self.contact(y)
+        return float(p.x + self.a * self.surface.normal(p).x - self.least)
+
     def slopes(self, _: float, y: Any) -> list[float]:
         """Return the slopes of R_p, z, the matrix of solutions (by rows) and the solution that starts at zero."""
         p = self.contact(y)
@@ -95,8 +100,7 @@ class _Meridian:
         from scipy.integrate import solve_ivp
 
         def near_axis(_: float, y: Any) -> float:
-            p = self.contact(y)
-            return float(p.x + self.a * self.surface.normal(p).x - self.least)
+            return self.off_axis(y)
 
         near_axis.terminal = True  # type: ignore[attr-defined]
         return solve_ivp(
@@ -152,7 +156,8 @@ def _both(solutions: tuple[Any, Any], sigma: Any) -> Any:
 def _pair(system: RollingSystem, at: Record) -> list[Any]:
     """Return the terms of ℓ and w carried along the meridian to the latitude of the record's first contact.
 
-    None where the centre comes to the axis, at which the equation along the meridian is singular.
+    None where the centre comes to the axis, at which the equation along the meridian is singular, or where contacts
+    that were measured lie so far beside the surface that it seems to.
     """
     import numpy as np
 
@@ -166,7 +171,10 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     centre = np.hypot(*(np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in (r.x, r.y)))
     if centre.min() <= max(_NEAREST * centre.max(), _ON_AXIS * a):
         return []
-    A, B, C, D, *turned = _Meridian(system, distance, contact[2], centre).at_each()[2:]
+    meridian = _Meridian(system, distance, contact[2], centre)
+    if not meridian.off_axis(_BEGIN) > 0:
+        return []
+    A, B, C, D, *turned = meridian.at_each()[2:]
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
     columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
     columns += [-inverse[:, 0] * turned[0], -inverse[:, 1] * turned[1]]
