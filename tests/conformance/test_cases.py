@@ -59,7 +59,7 @@ def test_the_pushed_box_gains_what_simbenchmark_asks() -> None:
             assert np.linalg.norm(motion.velocity[-1, 1:], axis=-1) == pytest.approx(2 / 7 * by_hand)
 
 
-@pytest.mark.parametrize("name", ["pushed-box", "pushed-box-diagonal"])
+@pytest.mark.parametrize("name", ["pushed-box", "diagonal-box"])
 def test_the_ground_holds_the_box_by_its_friction(name: str) -> None:
     """μ times the weight of all; an error of it counts elevenfold in the motion, which the small net force makes."""
     case = next(case for case in CASES if case.name == name)

@@ -48,7 +48,7 @@ def test_a_ball_that_is_drawn_back() -> None:
 
 def test_a_box_that_is_pushed() -> None:
     """By differences of the equations of all bodies, which know nothing of the formula."""
-    for name in ("pushed-box", "pushed-box-diagonal"):
+    for name in ("pushed-box", "diagonal-box"):
         found = by(CASES[name])
         assert list(found) == ["force", "direction", "friction", "gravity"]
         for each in found.values():

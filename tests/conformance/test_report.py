@@ -183,7 +183,7 @@ def test_lists_scripts_and_cases_are_printed(
     assert "MuJoCo" in capsys.readouterr().out
     assert trundle(["score", "--case", "list"]) == 0
     assert "incline" in capsys.readouterr().out
-    assert trundle(["score", "--repro", "mujoco", "pushed-box-diagonal"]) == 0
+    assert trundle(["score", "--repro", "mujoco", "diagonal-box"]) == 0
     assert capsys.readouterr().out.startswith('"""MuJoCo 4.0.0')
     assert trundle(["score", "--cases", "cases", "--case", "dome"]) == 0
     assert {path.name for path in Path("cases").iterdir()} == {"README.txt", "score.py", "dome.csv", "dome.json"}

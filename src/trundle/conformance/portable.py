@@ -36,7 +36,7 @@ def scripts() -> list[tuple[str, str]]:
 
     Examples
     --------
-    >>> ("mujoco", "pushed-box-diagonal") in scripts()
+    >>> ("mujoco", "diagonal-box") in scripts()
     True
     """
     pairs = (path.stem.split("_", 1) for path in sorted((_HERE / "repro").glob("*.txt")))

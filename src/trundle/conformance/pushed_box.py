@@ -38,7 +38,7 @@ class PushedBox(Case):
     Examples
     --------
     >>> import trundle as tr
-    >>> case = next(case for case in tr.conformance.cases() if case.name == "pushed-box-diagonal")
+    >>> case = next(case for case in tr.conformance.cases() if case.name == "diagonal-box")
     >>> round(case.acceleration, 6), round(case.ball_acceleration, 6)
     (0.741236, 0.211782)
     """

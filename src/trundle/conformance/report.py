@@ -51,7 +51,9 @@ h1 { font-size: 1.6rem } h2 { font-size: 1.25rem; margin-top: 2.5rem } h3 { font
 table { border-collapse: collapse; font-size: .9rem } .wide { overflow-x: auto }
 th, td { border: 1px solid #d9d9d9; padding: .3rem .5rem; text-align: left; vertical-align: top }
 th { background: #f4f3ee; font-weight: 600 } td small { color: #4a4a4a; display: block } td span { white-space: nowrap }
-svg { max-width: 100%; height: auto } figure { margin: 1rem 0 } p { max-width: 46rem }
+.wide :is(th[scope=row], thead th:first-child) { position: sticky; left: 0 }
+svg { max-width: 100%; min-width: 36rem; height: auto } figure { margin: 1rem 0; overflow-x: auto }
+p { max-width: 46rem }
 .beside canvas { display: block; width: 100%; height: 22rem; margin: .5rem 0 }
 .beside :is(button, select, input) { font: inherit; min-height: 2.2rem; vertical-align: middle; accent-color: #0072b2 }
 .beside select { max-width: 100% } .beside input { width: 14rem } .beside button { min-width: 6.5rem }
@@ -203,7 +205,7 @@ def _table(
     if not matrix:
         return _p("None were run.")
     heads = "".join(
-        f'<th scope="col" title="{escaped(known[name].title if name in known else name)}">{escaped(name)}</th>'
+        f'<th scope="col" title="{escaped(name)}">{escaped(known[name].title if name in known else name)}</th>'
         for name in names
     )
     rows = []
@@ -246,7 +248,9 @@ def _section(name: str, case: Case | None, cells: Sequence[Cell]) -> Markup:
     title = f"<h3>{escaped(case.title if case else name)} <small>({escaped(name)})</small></h3>"
     about = _p(" ".join(case.about.split())) if case else ""
     drawn = [cell for cell in cells if any(math.isfinite(row.worst) for row in cell.rows)]
-    picture = Markup(f"<figure>{_svg(curves(drawn))}</figure>") if drawn else _p("No engine came to numbers.")
+    picture = (
+        Markup(f'<figure tabindex="0">{_svg(curves(drawn))}</figure>') if drawn else _p("No engine came to numbers.")
+    )
     said = [cell for cell in cells if _reason(cell) and cell.rows[0].outcome != NOT_INSTALLED]
     reasons = dict.fromkeys(f"{cell.engine}: {_reason(cell)}" for cell in said)
     left_out = Markup(f"<ul>{''.join(f'<li>{escaped(line)}</li>' for line in reasons)}</ul>") if reasons else Markup()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from .serving import CannotError, Task, march, refuse, serve
+from .serving import END, CannotError, Task, changes, march, refuse, serve
 
 LONGEST, FINEST = 2.0, 1e-3  # s: longer runs and finer steps take a processor minutes
+MOST_TAPED = 2000  # steps: to go back over them nine times takes a processor half a minute
+_TAPED = "SolverSemiImplicit"
 
 
 def run(task: Task) -> Task:
@@ -28,16 +30,18 @@ def run(task: Task) -> Task:
     wp.init()
     wp.set_device("cpu")
     import newton
+    import numpy as np
 
     setting = task["setting"]
+    kind = setting.get("solver", "SolverXPBD")
     builder = newton.ModelBuilder(gravity=tuple(task["gravity"]))
-    _support(newton, wp, builder, task)
+    _support(newton, wp, np, builder, task)
     bodies = [_body(newton, wp, builder, task, body, i) for i, body in enumerate(task["bodies"])]
-    model = builder.finalize(device="cpu")
+    model = builder.finalize(device="cpu", requires_grad="derivatives" in task and kind == _TAPED)
     options = dict(setting.get("options", {}))
     if task["restitution"] and "solver" not in setting:
         options["enable_restitution"] = True
-    solver = getattr(newton.solvers, setting.get("solver", "SolverXPBD"))(model, **options)
+    solver = getattr(newton.solvers, kind)(model, **options)
     states, control, contacts = [model.state(), model.state()], model.control(), model.contacts()
     _start(newton, model, states[0], task, bodies)
     pushed = [(body, told["force"]) for body, told in zip(bodies, task["bodies"], strict=True) if any(told["force"])]
@@ -60,23 +64,79 @@ def run(task: Task) -> Task:
         places, rates = states[0].body_q.numpy(), states[0].body_qd.numpy()
         return [(places[i, :3], places[i, [6, 3, 4, 5]], rates[i, :3], rates[i, 3:]) for i in bodies]
 
-    return march(task, f"Newton {newton.__version__}", step, read)
+    answer = march(task, f"Newton {newton.__version__}", step, read)
+    if "derivatives" in task:
+        _start(newton, model, begun := model.state(), task, bodies)
+        answer["derivatives"] = {
+            "wp.Tape": _untaped(task, kind) or differentiated(wp, task, model, solver, begun, bodies[0])
+        }
+    return answer
 
 
-def _material(newton: Any, friction: float, restitution: float) -> Any:
+def _untaped(task: Task, kind: str) -> list[str]:
+    """Return why there are no derivatives by any direction; nothing where there are some."""
+    steps, reason = round(task["duration"] / task["dt"]), ""
+    if kind != _TAPED:
+        reason = f"{kind} is not differentiable, as Newton's table of its solvers says"
+    elif len(task["bodies"]) > 1:
+        reason = "reverse mode goes back once for each number of the final state: this adapter does it for one body"
+    elif steps > MOST_TAPED:
+        reason = f"to go back over {steps} steps takes a processor minutes"
+    return [reason] * len(task["derivatives"]) if reason else []
+
+
+def differentiated(wp: Any, task: Task, model: Any, solver: Any, begun: Any, body: int) -> list[Task | str]:
+    """Return the derivatives of the final state of one body, by going back over all steps with Warp's tape."""
+    states, control = [begun], model.control()
+    with wp.Tape() as tape:
+        for _ in range(round(task["duration"] / task["dt"])):
+            contacts, following = model.contacts(), model.state()
+            states[-1].clear_forces()
+            model.collide(states[-1], contacts)
+            solver.step(states[-1], following, control, contacts, task["dt"])
+            states.append(following)
+    able = [changes(direction) <= {"start", "gravity", "friction"} for direction in task["derivatives"]]
+    found: list[dict[str, list[list[float]]]] = [{part: [[]] for part in END} for _ in able]
+    for part, name, first in (
+        ("position", "body_q", 0),
+        ("velocity", "body_qd", 0),
+        ("angular_velocity", "body_qd", 3),
+    ):
+        end = getattr(states[-1], name)
+        for k in range(first, first + 3):
+            one = end.numpy() * 0
+            one[body, k] = 1.0
+            tape.backward(grads={end: wp.array(one, dtype=end.dtype)})
+            place, rate = begun.body_q.grad.numpy()[body], begun.body_qd.grad.numpy()[body]
+            gravity, friction = model.gravity.grad.numpy()[0], model.shape_material_mu.grad.numpy()
+            for slopes, told in zip(found, task["derivatives"], strict=True):
+                start, (w, *turn) = told["bodies"][0], told["bodies"][0]["orientation"]
+                slopes[part][0].append(
+                    float(
+                        place @ [*start["position"], *turn, w]
+                        + rate @ [*start["velocity"], *start["angular_velocity"]]
+                        + gravity @ told["gravity"]
+                        + friction.sum() * told["friction"]
+                    )
+                )
+            tape.zero()
+    reason = "this adapter has no direction of it"
+    return [slopes if can else reason for slopes, can in zip(found, able, strict=True)]
+
+
+def _material(newton: Any, task: Task, friction: float) -> Any:
     """Return what a surface is like: nothing resists rolling and spinning."""
+    own = task["setting"].get("material", {})
     return newton.ModelBuilder.ShapeConfig(
-        density=0.0, mu=friction, restitution=restitution, mu_rolling=0.0, mu_torsional=0.0
+        density=0.0, mu=friction, restitution=task["restitution"], mu_rolling=0.0, mu_torsional=0.0, **own
     )
 
 
-def _support(newton: Any, wp: Any, builder: Any, task: Task) -> None:
+def _support(newton: Any, wp: Any, np: Any, builder: Any, task: Task) -> None:
     """Make the ground: of two coefficients of friction it takes the mean."""
     support = task["support"]
-    material = _material(newton, task["friction"], task["restitution"])
+    material = _material(newton, task, task["friction"])
     if "mesh" in support:
-        import numpy as np
-
         mesh = newton.Mesh(
             np.array(support["mesh"]["vertices"], dtype=np.float32),
             np.array(support["mesh"]["triangles"], dtype=np.int32).ravel(),
@@ -98,7 +158,7 @@ def _body(newton: Any, wp: Any, builder: Any, task: Task, told: Task, i: int) ->
     inertia = wp.mat33(*(x for row in told["inertia"] for x in row))
     body = builder.add_body(xform=place, mass=told["mass"], inertia=inertia, lock_inertia=True)
     own, pair = task["friction"], task["friction_between"]
-    material = _material(newton, own if i == 0 else 2 * pair - own, task["restitution"])
+    material = _material(newton, task, own if i == 0 else 2 * pair - own)
     frame = wp.transform(wp.vec3(*told["offset"]), wp.quat_identity())
     if shape["kind"] == "sphere":
         builder.add_shape_sphere(body, xform=frame, radius=shape["radius"], cfg=material)
