@@ -13,6 +13,7 @@ MODULES = {  # what each brings, as it is imported
     "notebook": ("anywidget",),
     "numba": ("numba",),
     "parquet": ("pyarrow",),
+    "score": ("pytest",),
     "sweep": ("dask", "distributed", "zarr"),
     "video": ("cv2",),
 }

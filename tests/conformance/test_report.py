@@ -206,6 +206,19 @@ def test_an_engine_that_is_installed_rolls_down_an_incline(name: str) -> None:
     assert errors_of(CASES["incline"], CASES["incline"].exact(), answer.motion).position < 0.02
 
 
+@pytest.mark.parametrize("name", [name for name in INSTALLED if name != "mjx"])  # which compiles the box for minutes
+def test_an_engine_that_is_installed_is_pushed(name: str) -> None:
+    """Every engine that has boxes and balls takes the force at each of its steps."""
+    case, engine = CASES["pushed-box"], engines.engine(name)
+    best = next(each for each in engine.profiles if each.name == "best")
+    with engine.adapter(60.0) as adapter:
+        answer = adapter.answer(case, 1e-2, dict(best.values))
+    if answer.outcome == "cannot":
+        pytest.skip(answer.message)
+    assert answer.motion is not None, answer.message
+    assert answer.motion.position[-1, 0, 0] > 0.5 * case.exact().position[-1, 0, 0]  # how well, is another question
+
+
 def test_what_is_done_is_kept_when_it_is_interrupted(
     program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

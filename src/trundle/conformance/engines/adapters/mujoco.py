@@ -19,6 +19,7 @@ SHIPPED = {
 }
 _ALONE = 'contype="0" conaffinity="0"'  # what meets something is named as a pair with it
 DIFFERENCES = (1e-6, 1e-8)  # by which mjd_transitionFD moves the state
+_BY_NUMBERS = "mjd_transitionFD has derivatives by the state, and none by numbers of the model"
 
 
 def model(task: Task, *, moving: bool = True) -> str:
@@ -110,6 +111,8 @@ def chained(mujoco: Any, task: Task, world: Any, data: Any, read: Any) -> Task:
 
     directions = task["derivatives"]
     able = [changes(direction) <= {"start"} for direction in directions]
+    if not any(able):
+        raise CannotError(_BY_NUMBERS)
     if len(task["bodies"]) > 1:
         raise CannotError("this adapter chains the derivatives of one body")
     begun = np.array([_tangent(task, direction) for direction in directions]).T
@@ -134,9 +137,8 @@ def chained(mujoco: Any, task: Task, world: Any, data: Any, read: Any) -> Task:
         parts = {"position": place[:3], "velocity": velocity[:3], "angular_velocity": turned(turn, across)}
         return {name: [[float(x) for x in part]] for name, part in parts.items()}
 
-    reason = "mjd_transitionFD has derivatives by the state, and none by numbers of the model"
     answer["derivatives"] = {
-        f"mjd_transitionFD by {by:g}": [end(slope) if able[j] else reason for j, slope in enumerate(slopes[by].T)]
+        f"mjd_transitionFD by {by:g}": [end(slope) if able[j] else _BY_NUMBERS for j, slope in enumerate(slopes[by].T)]
         for by in DIFFERENCES
     }
     return answer
