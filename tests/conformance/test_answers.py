@@ -95,7 +95,7 @@ def flipped() -> list[Any]:
     return [each[list(axes)] for each in signs for axes in itertools.permutations(range(3))][1:]
 
 
-@pytest.mark.parametrize("name", ["billiard-swerve", "dome", "incline"])
+@pytest.mark.parametrize("name", ["billiard-swerve", "dome", "incline", "tippe-top"])
 def test_no_array_in_other_axes_is_taken(name: str) -> None:
     """Alone, or all of them together where the start tells it not, because everything is at rest."""
     good = good_answer(CASES[name])
@@ -133,7 +133,7 @@ def close(part: str, array: Any, wanted: Any) -> bool:
         (altered("position", lambda x: x[..., [1, 0, 2]]), "is not how the position changes: it is (y, x, z)"),
         (
             lambda told: {**told, **{k: np.array(told[k])[..., [1, 0, 2]].tolist() for k in ("position", "velocity")}},
-            "`position` is in other axes: it is (y, x, z)",
+            "`position` is in other axes or units: it is (y, x, z)",
         ),
     ],
 )
@@ -141,6 +141,16 @@ def test_what_a_start_at_rest_does_not_tell_is_named(change: Change, words: str)
     answer = read_answer(json.dumps(change(good_answer(CASES["incline"]))), CASES["incline"], 1)
     assert answer.outcome == "bad answer"
     assert words in answer.message
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("unit", "words"), [(1e3, "it is in mm"), (1e2, "it is in cm"), (1e-3, "it is in km")])
+def test_lengths_in_another_unit_are_named(name: str, unit: float, words: str) -> None:
+    good = good_answer(CASES[name])
+    told = good | {part: (unit * np.array(good[part])).tolist() for part in ("position", "velocity")}
+    answer = read_answer(json.dumps(told), CASES[name], 1)
+    assert answer.outcome == "bad answer"
+    assert words in answer.message or "velocity` at the start" in answer.message
 
 
 def test_a_body_that_stays_is_an_answer() -> None:

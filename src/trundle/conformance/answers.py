@@ -18,9 +18,8 @@ _LOOSE = 1e-3  # of a unit quaternion's length, and of a start relative to its s
 _LARGE_TURN = 2.0  # rad between samples: beyond it differences of orientations do not tell Ω
 _SLOW, _FEWEST = 0.05, 10  # share of the highest rate from which a sample tells, and how many must
 _DISAGREES, _AGREES = 0.02, 0.1  # of a rate, in the middle of all samples; share of that which another reading leaves
-_ELSEWHERE = 0.5  # of the way
 _STILL = 1e-6  # of the other rate: float32 moves more
-_LENGTHS = {"it is in mm/s": 1e3, "it is in cm/s": 1e2, "it is in km/s": 1e-3}
+_LENGTHS = {"it is in mm": 1e3, "it is in cm": 1e2, "it is in km": 1e-3}
 # What may stand in the place of (x, y, z), with the matrix that takes it back; few signs first.
 _AXES = {
     f"({', '.join(sign + axis for sign, axis in zip(signs, axes, strict=True))})": np.array(
@@ -176,6 +175,10 @@ def _check_start(motion: Motion, case: Case) -> None:
         apart = np.abs(begun - given[name])
         off = float(apart.max())
         if name == "position":  # a contact that is a spring starts in balance, a little lower
+            for words, unit in _LENGTHS.items():
+                near = np.abs(begun / unit - given[name]).max() <= _LOOSE * extent(case)
+                if near and off > _LOOSE * extent(case):
+                    raise _BadAnswerError(f"`position` at the start is off by {off:.3g}: {words}")
             size = 0.5 * extent(case) / _LOOSE
             apart = apart * [5.0, 5.0, 1.0]  # but not aside
         if apart.max() <= _LOOSE * size:
@@ -201,7 +204,8 @@ def _check_rates(motion: Motion, size: float) -> None:
     back, Omega = q * [1, -1, -1, -1], motion.angular_velocity
     moved, turned, turned_back = np.diff(motion.position, axis=0), _turns(q), _turns(back)
     turned[np.linalg.norm(turned, axis=-1) > _LARGE_TURN] = np.nan  # it may have been the other way round
-    _check_rate("velocity", "the position changes", moved / step, motion.velocity, _LENGTHS, {}, least * size)
+    speeds = {f"{words}/s": unit for words, unit in _LENGTHS.items()}
+    _check_rate("velocity", "the position changes", moved / step, motion.velocity, speeds, {}, least * size)
     others = {
         "it is in the axes of the body": (turned / step, in_body_axes(back, Omega)),
         "`orientation` turns from space to body": (turned_back / step, Omega),
@@ -248,15 +252,21 @@ def _check_rate(
 
 
 def _check_axes(motion: Motion, case: Case) -> None:
-    """Name axes that a start at rest does not tell: the motion is the exact one in others."""
-    if any(np.any(body[name]) for body in case.situation()["bodies"] for name in ("velocity", "angular_velocity")):
-        return
-    exact, found = (each.position - each.position[:1] for each in (case.exact(), motion))
-    size = np.abs(exact).max()
-    apart = np.abs(found - exact).max()
-    for words, matrix in _AXES.items():
-        if apart > _ELSEWHERE * size and np.abs(found @ matrix - exact).max() < _AGREES * apart:
-            raise _BadAnswerError(f"`position` is in other axes: it is {words}")
+    """Name axes and units that neither a start nor rates tell: the motion is the exact one in others."""
+    exact = case.exact()
+    for name in ("position", "velocity", "angular_velocity"):
+        true, found = getattr(exact, name), getattr(motion, name)
+        if name == "position":
+            true, found = true - true[:1], found - found[:1]
+        apart = np.abs(found - true).max()
+        if apart <= _DISAGREES * np.abs(true).max():
+            continue
+        readings = {f"it is {words}": found @ matrix for words, matrix in _AXES.items()}
+        if name != "angular_velocity":
+            readings |= {words: found / unit for words, unit in _LENGTHS.items()}
+        for words, reading in readings.items():
+            if np.abs(reading - true).max() < _AGREES * apart:
+                raise _BadAnswerError(f"`{name}` is in other axes or units: {words}")
 
 
 def _turns(q: Array) -> Array:

@@ -16,15 +16,19 @@ from itertools import pairwise
 from pathlib import Path
 
 Bodies = dict[int, list[tuple[float, list[float], list[float], list[float]]]]
+PARTS = (("x", "y", "z"), ("qw", "qx", "qy", "qz"), ("wx", "wy", "wz"))
 
 
 def read(path: str | Path) -> Bodies:
     """Return {body: [(time, position, quaternion, angular velocity)]} of a file."""
     bodies: Bodies = {}
     with Path(path).open(newline="") as stream:
-        for row in csv.DictReader(stream):
-            parts = (("x", "y", "z"), ("qw", "qx", "qy", "qz"), ("wx", "wy", "wz"))
-            place, turn, spin = ([float(row[name]) for name in part] for part in parts)
+        rows = csv.DictReader(stream)
+        missing = {"time", "body", *(name for part in PARTS for name in part)} - {*(rows.fieldnames or ())}
+        if missing:
+            raise ValueError(f"these columns are missing: {', '.join(sorted(missing))}")
+        for row in rows:
+            place, turn, spin = ([float(row[name]) for name in part] for part in PARTS)
             bodies.setdefault(int(row["body"]), []).append((float(row["time"]), place, turn, spin))
     return bodies
 
@@ -59,13 +63,18 @@ def compare(exact: Bodies, mine: Bodies) -> tuple[float, float]:
 
 def main(name: str, file: str, threshold: str = "inf") -> int:
     """Compare one file, and return the exit status."""
+    exact = Path(__file__).with_name(f"{name}.csv")
+    if not exact.exists():
+        print(f"{name}: there is no case of this name beside {Path(__file__).name}", file=sys.stderr)
+        return 2
     try:
-        position, turning = compare(read(Path(__file__).with_name(f"{name}.csv")), read(file))
-    except (OSError, KeyError, TypeError, ValueError) as error:
+        most = float(threshold)
+        position, turning = compare(read(exact), read(file))
+    except (OSError, TypeError, ValueError) as error:
         print(f"{file}: {error}", file=sys.stderr)
         return 2
     print(f"{name}: position {position:.2e} of the path, orientation {turning:.2e} of the angle turned through")
-    return int(max(position, turning) > float(threshold))
+    return int(max(position, turning) > most)
 
 
 if __name__ == "__main__":

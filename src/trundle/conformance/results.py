@@ -309,7 +309,7 @@ class Score(Displayed):
             if not math.isfinite(last.worst):
                 lines.append(f"{where}: {last.outcome}, {last.message}")
             elif at_most is not None and last.worst > at_most:
-                lines.append(f"{where}: the error is {last.worst:.2g} at {last.step:g} s, more than {at_most:g}")
+                lines.append(f"{where}: the error is {last.worst:.4g} at {last.step:g} s, more than {at_most:g}")
             elif least_order is not None and cell.name != EXACT and not cell.order >= least_order:
                 lines.append(f"{where}: the error falls at the order {cell.order:.2g}, less than {least_order:g}")
         return lines

@@ -126,7 +126,8 @@ class Rolling(Case):
             if received not in words:
                 raise ScenarioError(key, f"must be one of {', '.join(words)} {_FOR}", received, "", self.name)
         if support.friction is None:
-            raise ScenarioError("support.friction", f"must be given {_FOR}", None, "Engines need it.", self.name)
+            remedy = "Add, say, `friction = 0.5` under [support]: in an engine nothing else makes a body roll."
+            raise ScenarioError("support.friction", f"must be given {_FOR}", None, remedy, self.name)
         if system.loads:
             raise ScenarioError("loads", f"must be absent {_FOR}", len(system.loads), "", self.name)
 
