@@ -153,6 +153,18 @@ def test_lengths_in_another_unit_are_named(name: str, unit: float, words: str) -
     assert words in answer.message or "velocity` at the start" in answer.message
 
 
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("far", [1e-4, 1.0, 1e3])
+def test_a_motion_that_goes_astray_is_an_answer(name: str, far: float) -> None:
+    """It drifts away, and its rates with it: what is wrong is no bad answer, however far it is."""
+    good = good_answer(CASES[name])
+    t = np.array(good["time"])[:, None, None]
+    drift, rate = far * t**3 * [0.3, -0.8, 0.5], far * 3 * t**2 * [0.3, -0.8, 0.5]
+    told = {"position": np.array(good["position"]) + drift, "velocity": np.array(good["velocity"]) + rate}
+    answer = read_answer(json.dumps(good | {part: array.tolist() for part, array in told.items()}), CASES[name], 1)
+    assert (answer.outcome, answer.message) == ("ok", "")
+
+
 def test_a_body_that_stays_is_an_answer() -> None:
     """An engine may find that nothing moves: it is wrong, and no bad answer."""
     good = good_answer(CASES["incline"])

@@ -258,14 +258,14 @@ def _check_axes(motion: Motion, case: Case) -> None:
         true, found = getattr(exact, name), getattr(motion, name)
         if name == "position":
             true, found = true - true[:1], found - found[:1]
-        apart = np.abs(found - true).max()
-        if apart <= _DISAGREES * np.abs(true).max():
+        apart, size = np.abs(found - true).max(), np.abs(true).max()
+        if apart <= _DISAGREES * size:
             continue
         readings = {f"it is {words}": found @ matrix for words, matrix in _AXES.items()}
         if name != "angular_velocity":
             readings |= {words: found / unit for words, unit in _LENGTHS.items()}
         for words, reading in readings.items():
-            if np.abs(reading - true).max() < _AGREES * apart:
+            if np.abs(reading - true).max() < _AGREES * min(apart, size):
                 raise _BadAnswerError(f"`{name}` is in other axes or units: {words}")
 
 
