@@ -182,8 +182,8 @@ class _Lowering:
     def _bring(self, part: Any) -> None:
         """Bring a step, and what it leans on, to normal form."""
         if isinstance(part, Node):
-            for index in self.old.needed([part]):
-                if index not in self.sums and not self.fixed[index]:
+            for index in self.old.needed([part], self.sums):
+                if not self.fixed[index]:
                     self.sums[index] = self._in_form(index)
                     if index in self.positive:
                         self.form.take_for_positive(self.sums[index])

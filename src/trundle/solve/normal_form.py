@@ -316,7 +316,7 @@ class NormalForm:
 
 
 def _key_of(value: Sum) -> Any:
-    return frozenset((monomial, _key(coefficient)) for monomial, coefficient in value.items())
+    return frozenset([(monomial, _key(coefficient)) for monomial, coefficient in value.items()])
 
 
 def _key(coefficient: Any) -> Any:
@@ -360,7 +360,7 @@ def _times(a: Monomial, b: Monomial) -> Monomial:
     counts = dict(a)
     for place, count in b:
         counts[place] = counts.get(place, 0) + count
-    return tuple(sorted((place, count) for place, count in counts.items() if count))
+    return tuple(sorted([pair for pair in counts.items() if pair[1]]))
 
 
 def _inverted(monomial: Monomial) -> Monomial:
@@ -369,6 +369,8 @@ def _inverted(monomial: Monomial) -> Monomial:
 
 def _cancels(a: Monomial, b: Monomial) -> bool:
     """Tell whether a factor of the one is a divisor of the other."""
+    if not a or not b:
+        return False
     counts = dict(a)
     return any(counts.get(place, 0) * count < 0 for place, count in b)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -64,6 +64,7 @@ class Tape:
 
     def __init__(self) -> None:
         self.steps: list[tuple[Any, ...]] = []
+        self.leaning: list[tuple[int, ...]] = []  # the steps that each leans on
         self.known: dict[tuple[Any, ...], Node] = {}
         self.loops: list[Loop] = []
         self.size = 0
@@ -76,10 +77,12 @@ class Tape:
     def record(self, operation: str, *operands: Any) -> Node:
         """Return the result of an operation, the earlier one where the same was done before."""
         key = _key(operation, operands)
-        if key not in self.known:
-            self.known[key] = Node(self, len(self.steps))
+        known = self.known.get(key)
+        if known is None:
+            known = self.known[key] = Node(self, len(self.steps), operands[0] if operation == "neg" else None)
             self.steps.append((operation, *operands))
-        return self.known[key]
+            self.leaning.append(tuple([part.index for part in operands if isinstance(part, Node)]))
+        return known
 
     def has(self, operation: str, *operands: Any) -> bool:
         """Tell whether an operation was recorded before."""
@@ -153,14 +156,15 @@ class Tape:
         given = tuple(texts[:size]), tuple(texts[size:])
         return WrittenLoop(targets, *given, changing, staying, *loop.tape.written(loop.outputs, inner, "w"))
 
-    def needed(self, outputs: Sequence[Any]) -> list[int]:
-        """Return the steps that the outputs lean on, in order."""
-        waiting, found = [part.index for part in outputs if isinstance(part, Node)], set()
+    def needed(self, outputs: Sequence[Any], done: Container[int] = ()) -> list[int]:
+        """Return the steps that the outputs lean on, in order, without those that are done, and what these lean on."""
+        waiting, found = [part.index for part in outputs if isinstance(part, Node)], set[int]()
+        leaning = self.leaning
         while waiting:
             index = waiting.pop()
-            if index not in found:
+            if index not in found and index not in done:
                 found.add(index)
-                waiting += [part.index for part in self.steps[index][1:] if isinstance(part, Node)]
+                waiting += leaning[index]
         return sorted(found)
 
 
@@ -199,17 +203,18 @@ def repeated(body: Callable[..., Sequence[Any]], start: Sequence[Any], given: Se
 
 
 def _key(operation: str, operands: Sequence[Any]) -> tuple[Any, ...]:
-    return (operation, *(part.index if isinstance(part, Node) else ("number", part) for part in operands))
+    return (operation, *[part.index if isinstance(part, Node) else ("number", part) for part in operands])
 
 
 class Node:
     """A scalar whose arithmetic is recorded."""
 
-    __slots__ = ("index", "tape")
+    __slots__ = ("index", "minus", "tape")
     __array_ufunc__ = None
 
-    def __init__(self, tape: Tape, index: int) -> None:
+    def __init__(self, tape: Tape, index: int, minus: Any = None) -> None:
         self.tape, self.index = tape, index
+        self.minus = minus  # what this is the negative of
 
     @staticmethod
     def scalar_functions() -> Any:
@@ -217,47 +222,40 @@ class Node:
         return _Functions
 
     def __add__(self, other: Any) -> Any:
-        return self if _is(other, 0) else self._with(_sum, self, other)
+        return self if _is(other, 0) else self._with(_sum, other)
 
     __radd__ = __add__
 
     def __sub__(self, other: Any) -> Any:
-        return self if _is(other, 0) else self._with(_difference, self, other)
+        return self if _is(other, 0) else self._with(_difference, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return -self if _is(other, 0) else self._with(_difference, other, self)
+        return -self if _is(other, 0) else self._with(_difference, other, first=False)
 
     def __mul__(self, other: Any) -> Any:
-        if _is(other, 0):
-            return 0.0
-        if _is(other, 1):
-            return self
-        return -self if _is(other, -1) else self._with(_product, self, other)
+        if isinstance(other, (int, float)) and other in (0, 1, -1):
+            return (0.0 if other == 0 else self) if other >= 0 else -self
+        return self._with(_product, other)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> Any:
-        return self if _is(other, 1) else self._with(_quotient, self, other)
+        return self if _is(other, 1) else self._with(_quotient, other)
 
     def __rtruediv__(self, other: Any) -> Any:
-        return 0.0 if _is(other, 0) else self._with(_quotient, other, self)
+        return 0.0 if _is(other, 0) else self._with(_quotient, other, first=False)
 
-    def _with(self, operation: Callable[[Tape, Any, Any], Any], a: Any, b: Any) -> Any:
+    def _with(self, operation: Callable[[Tape, Any, Any], Any], other: Any, *, first: bool = True) -> Any:
         """Record an operation with another scalar; vectors, matrices and jets know better."""
-        known = all(isinstance(part, (int, float, Node)) for part in (a, b))
-        return operation(self.tape, a, b) if known else NotImplemented
+        if not isinstance(other, (Node, float, int)):
+            return NotImplemented
+        return operation(self.tape, self, other) if first else operation(self.tape, other, self)
 
     def __neg__(self) -> Any:
         return self.tape.record("neg", self) if self.minus is None else self.minus
 
     def __bool__(self) -> bool:
         raise TypeError("What is recorded has no value to decide by: choose by `where` of `scalars.namespace`.")
-
-    @property
-    def minus(self) -> Any:
-        """What this is the negative of, or None."""
-        operation, *operands = self.tape.steps[self.index]
-        return operands[0] if operation == "neg" else None
 
     def __pow__(self, power: int) -> Any:
         if power < 0:
@@ -269,10 +267,10 @@ class Node:
         return self.tape.record("abs", self)
 
     def __lt__(self, other: Any) -> Any:
-        return self._with(lambda tape, a, b: tape.record("<", a, b), self, other)
+        return self._with(lambda tape, a, b: tape.record("<", a, b), other)
 
     def __gt__(self, other: Any) -> Any:
-        return self._with(lambda tape, a, b: tape.record(">", a, b), self, other)
+        return self._with(lambda tape, a, b: tape.record(">", a, b), other)
 
 
 # One form for what is the same to the last bit: factors and summands in the order in which they came up, signs outside.

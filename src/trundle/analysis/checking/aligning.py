@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -82,12 +83,21 @@ class _Rolling:
             slip -= np.outer(carried, carried @ slip) / max(float(carried @ carried), 1e-300)
         self._off = np.vstack([slip, np.column_stack([spin, np.zeros(len(spin))])])
         self._size = velocity.size
-        self._rolled, self._slip, self._short = (np.linalg.qr(rows, "r") for rows in (rolled, slip, self._off))
+        self._rolled, self._slip, self._short = (
+            np.asarray(np.linalg.qr(rows, "r")) for rows in (rolled, slip, self._off)
+        )
 
     def fitted(self, start: Quaternion) -> Aligned | None:
         """Turn a start until least is off."""
+        turned = np.array([(Quaternion(*e) * start).array() for e in np.eye(4)])
+        constant, products = self._short[:, :9] @ _NONE + self._short[:, 9], _PRODUCTS @ self._short[:, :9].T
+
+        def residuals(sets: Array) -> Array:
+            q = _turn(sets.T).array() @ turned
+            return constant + np.einsum("ki,kj->kij", q, q).reshape(-1, 16) @ products
+
         found = least_squares(
-            lambda angles: self._short @ _with_one(_turn(angles) * start),
+            residuals,
             [0.0, 0.0, 0.0],
             lambda angles: self._off @ _with_one(_turn(angles) * start),
         )
@@ -109,15 +119,24 @@ def _elements(weights: Array, turning: Array) -> Array:
     return np.stack([weight * turning[:, [k]] for weight in weights for k in range(3)], axis=-1).reshape(-1, 9)
 
 
+def _nine(start: Any) -> Array:
+    return np.array([element for row in Quaternion(*start).matrix().rows for element in row])
+
+
+# The nine elements are these, and for each product of two components of a quaternion these (16, 9) more.
+_NONE = _nine(np.zeros(4))
+_PRODUCTS = 0.5 * np.array([_nine(a + b) - _nine(a) - _nine(b) + _NONE for a in np.eye(4) for b in np.eye(4)])
+
+
 def _with_one(start: Quaternion) -> Array:
     """Return the nine elements of a rotation matrix, and one for what does not depend on it."""
-    return np.array([*(element for row in start.matrix().rows for element in row), 1.0])
+    return np.array([*_nine(start), 1.0])
 
 
 def _turn(angles: Array) -> Quaternion:
     """Return the turn about a vector by its length, rad."""
-    half = float(np.linalg.norm(angles)) / 2
-    return Quaternion(float(np.cos(half)), *(0.5 * float(np.sinc(half / np.pi)) * angles))
+    half = np.linalg.norm(angles, axis=0) / 2
+    return Quaternion(np.cos(half), *(0.5 * np.sinc(half / np.pi) * angles))
 
 
 __all__ = ["Aligned", "aligned"]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 CHANCE = 1e-4  # that noise alone exceeds the bound of one figure of a card
 LEAST_FREEDOM = 1.0
 
 
+@lru_cache
 def longest(count: int, freedom: float, parts: int = 3, chance: float = CHANCE) -> float:
     """Return how long the longest of many vectors of noise becomes, in standard deviations of one component.
 

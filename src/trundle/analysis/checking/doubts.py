@@ -8,6 +8,7 @@ import numpy as np
 
 from .chance import longest
 from .noise import Noise, noise_of
+from .polynomials import Known
 from .slopes import Array, Index
 
 _WALKS = 4  # values of a random walk that are not much the same, in which Ω is moved across itself
@@ -44,20 +45,20 @@ class Doubt:
         return np.asarray(swinging + np.hypot(before, within))
 
 
-def doubt_of(time: Array, angular_velocity: Array, gain: Array) -> Doubt:
+def doubt_of(time: Array, angular_velocity: Array, gain: Array, known: Known) -> Doubt:
     """Return the doubt of an orientation that was added up.
 
     Examples
     --------
     >>> t = np.linspace(0.0, 4.0, 401)
     >>> rolling = 5.0 + np.random.default_rng(0).normal(scale=0.02, size=(401, 3))
-    >>> doubt = doubt_of(t, rolling, np.full(401, 0.1))
+    >>> doubt = doubt_of(t, rolling, np.full(401, 0.1), {})
     >>> doubt.walking[::100].round(3).tolist(), doubt.turning[::100].round(3).tolist()
     ([0.0, 0.009, 0.013, 0.016, 0.018], [0.1, 0.091, 0.087, 0.084, 0.082])
     """
     length = np.linalg.norm(angular_velocity, axis=1)[:, None]
     # Either may take for noise what it cannot follow of the motion.
-    variance = min(_variance(noise_of(time, values, {})) for values in (angular_velocity, length))
+    variance = min(_variance(noise_of(time, values, known)) for values in (angular_velocity, length))
     one = longest(_WALKS, time.size, parts=2) * np.sqrt(variance * float(np.median(np.diff(time))))
     walking = one * np.sqrt(time - time[0])
     return Doubt(np.maximum(gain - walking, 0.0), walking, one * _SLOPE)

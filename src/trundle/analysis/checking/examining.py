@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -50,25 +50,106 @@ _UNITS = {
 
 
 @dataclass(frozen=True)
+class _Looked:
+    """Their motion at the nodes and instants of a view, and where among these each is."""
+
+    at: Motion
+    places: dict[str, Index]
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What a comparison asks of their samples alone: its weights, the mean slope of what they wrote, what is open."""
+
+    weights: Weights
+    slope: Array
+    open: Open
+    moment: Array
+    note: str
+
+
+@dataclass(frozen=True)
 class View:
     """How their motion is looked at: what is compared over which windows, and at which instants contact and slip are.
 
-    It is found once, for the system as it was given; whoever asks for another law looks in the same way.
+    It is found once, for the system as it was given; whoever asks for another law looks in the same way. What asks for
+    no law is worked out once, too.
     """
 
     compared: tuple[tuple[Comparison, Plan], ...]
     instants: Index
     _known: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
 
-    def open(
-        self, one: Comparison, plan: Plan, theirs: ExternalTrajectory, at: Motion, place: Index, reacts: Sensitivity
-    ) -> tuple[Weights, Open]:
-        """Return the weights of a comparison, and what it leaves open; neither asks for the law, once it reacts."""
-        key = (one.name, id(theirs), id(reacts))
-        if key not in self._known:  # with what it was worked out of, so that nothing else takes its place in memory
-            weights = weights_of(plan, theirs.time, one.order)
-            self._known[key] = weights, left_open(one, weights, at, place, reacts), theirs, reacts
-        return self._known[key][:2]
+    def _once(self, key: tuple[Any, ...], of: tuple[Any, ...], found: Callable[[], Any]) -> Any:
+        """Work something out once of objects that are told by their place in memory, and are kept for that."""
+        key = (*key, *map(id, of))
+        if key not in self._known:
+            self._known[key] = found(), of
+        return self._known[key][0]
+
+    def looked(self, system: RollingSystem, theirs: ExternalTrajectory, start: State | None) -> _Looked:
+        """Return their motion on a support: neither loads, gravity nor inertia matter to it."""
+
+        def found() -> _Looked:
+            windows = {one.name: plan.index for one, plan in self.compared}
+            index, places = nodes_of(windows | {"": self.instants[None]})
+            return _Looked(motion_of(system, theirs, start, index), places)
+
+        parts = system.support.surface, system.support.motion, system.body.shape
+        equal = tuple(part if _hashable(part) else None for part in parts)
+        of = tuple(part for part, same in zip(parts, equal, strict=True) if same is None)
+        return self._once(("looked", equal), (theirs, start, *of), found)
+
+    def seen(
+        self, one: Comparison, plan: Plan, theirs: ExternalTrajectory, looked: _Looked, reacts: Sensitivity
+    ) -> _Seen:
+        """Return what asks for no law, once it is known how the law reacts."""
+
+        def found() -> _Seen:
+            weights = self._once(
+                ("weights", one.name), (theirs.time,), lambda: weights_of(plan, theirs.time, one.order)
+            )
+            open_ = left_open(one, weights, looked.at, looked.places[one.name], reacts)
+            note = f"{_UNITS[one.name]}, means over {_span(theirs, plan)}"
+            slope = weights.slope(getattr(theirs, one.array))
+            return _Seen(weights, slope, open_, plan.moment(theirs.time), note)
+
+        return self._once(("seen", one.name), (theirs, reacts), found)
+
+    def series(
+        self,
+        one: Comparison,
+        plan: Plan,
+        system: RollingSystem,
+        theirs: ExternalTrajectory,
+        looked: _Looked,
+        tolerance: float,
+        reacts: Sensitivity,
+        rates: Rates,
+    ) -> Series:
+        """Return what is left of a comparison."""
+
+        def found() -> Series:
+            kept = self.seen(one, plan, theirs, looked, reacts)
+            now = seen(one, kept.weights, kept.slope, theirs, looked.at, looked.places[one.name], rates, kept.open)
+            slope = now.mismatch + now.rate
+            size = _size(one.name, system, looked.at, slope, rates)
+            asked = _times(one.name) * tolerance * size
+            bound = asked + now.bias + longest(len(now.spread), now.freedom) * now.spread
+            motion = _largest(slope, now.rate)
+            return Series(one.name, kept.moment, now.mismatch, size, bound, asked, kept.note, motion)
+
+        return found() if one.which is not None else self._once((one.name, tolerance), (looked, reacts), found)
+
+    def contact(
+        self, system: RollingSystem, theirs: ExternalTrajectory, looked: _Looked, tolerance: float, reacts: Sensitivity
+    ) -> tuple[Series, ...]:
+        """Return gap and slip at the instants."""
+
+        def found() -> tuple[Series, ...]:
+            return tuple(_contact(system, theirs, looked.at, looked.places[""][0], tolerance, reacts))
+
+        return self._once(("contact", tolerance), (looked, reacts), found)
 
     def thinned(self, count: int) -> View:
         """Return no more than some of the windows and instants."""
@@ -78,9 +159,16 @@ class View:
     def fitting(self, theirs: ExternalTrajectory) -> View:
         """Return what of it can be looked at in changed samples, which may lack a part."""
         able = {(one.name, one.array) for one in comparisons(theirs)}
-        return View(
-            tuple(pair for pair in self.compared if (pair[0].name, pair[0].array) in able), self.instants, self._known
-        )
+        kept = tuple(pair for pair in self.compared if (pair[0].name, pair[0].array) in able)
+        return self if len(kept) == len(self.compared) else View(kept, self.instants, self._known)
+
+
+def _hashable(part: Any) -> bool:
+    try:
+        hash(part)
+    except TypeError:  # a part of somebody's own
+        return False
+    return True
 
 
 def view_of(system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None) -> View:
@@ -96,7 +184,8 @@ def view_of(system: RollingSystem, theirs: ExternalTrajectory, tolerance: float,
         for i, (name, plan) in enumerate(tried.items()):
             weights = weights_of(plan, theirs.time, one.order)
             here = theirs, at, places[name]
-            found = seen(one, weights, *here, rates, left_open(one, weights, *here[1:], reacts))
+            slope = weights.slope(getattr(theirs, one.array))
+            found = seen(one, weights, slope, *here, rates, left_open(one, weights, *here[1:], reacts))
             asked = _times(one.name) * tolerance * _size(one.name, system, at, found.mismatch + found.rate, rates)
             left = max(share_left(one, weights, *here[1:], rates), _DIMMEST)
             bound = float(np.median(SIGMAS * found.spread + found.bias + asked)) / left
@@ -120,23 +209,12 @@ def examine(
 ) -> tuple[dict[str, Series], Motion]:
     """Compare their motion with contact, constraint and law."""
     view = view.fitting(theirs)
-    windows = {one.name: plan.index for one, plan in view.compared}
-    index, places = nodes_of(windows | {"": view.instants[None]})
-    at = motion_of(system, theirs, start, index)
-    rates = law(system, at)
+    looked = view.looked(system, theirs, start)
+    rates = law(system, looked.at)
     reacts = sensitivity(system, theirs, start, law) if reacts is None else reacts
-    found = list(_contact(system, theirs, at, places[""][0], tolerance, reacts))
-    for one, plan in view.compared:
-        weights, open_ = view.open(one, plan, theirs, at, places[one.name], reacts)
-        one_ = seen(one, weights, theirs, at, places[one.name], rates, open_)
-        slope = one_.mismatch + one_.rate
-        size = _size(one.name, system, at, slope, rates)
-        asked = _times(one.name) * tolerance * size
-        bound = asked + one_.bias + longest(len(one_.spread), one_.freedom) * one_.spread
-        note = f"{_UNITS[one.name]}, means over {_span(theirs, plan)}"
-        motion = _largest(slope, one_.rate)
-        found.append(Series(one.name, plan.moment(theirs.time), one_.mismatch, size, bound, asked, note, motion))
-    return {series.name: series for series in found}, at
+    found = list(view.contact(system, theirs, looked, tolerance, reacts))
+    found += [view.series(one, plan, system, theirs, looked, tolerance, reacts, rates) for one, plan in view.compared]
+    return {series.name: series for series in found}, looked.at
 
 
 def _span(theirs: ExternalTrajectory, plan: Plan) -> str:

@@ -19,6 +19,9 @@ from .record import Array
 
 _LARGEST = 9.0  # of the logarithm of a factor
 _TINY = 1e-6  # of a number: its doubt is not worth a word
+_STEP = float(np.sqrt(np.finfo(float).eps))  # of a number, to its slopes
+_MOST_TRIED = 60  # sets of numbers
+_ENOUGH = {"ftol": 1e-8, "xtol": 1e-8, "gtol": 1e-8}
 
 
 @dataclass(frozen=True)
@@ -51,35 +54,60 @@ class _LateLaw:
 
 
 def least_squares(
-    residual: Callable[[Array], Array], guess: list[float], whole: Callable[[Array], Array] | None = None
+    residuals: Callable[[Array], Array], guess: list[float], whole: Callable[[Array], Array] | None = None
 ) -> tuple[Array, Array] | None:
-    """Fit numbers so that residuals, over their bounds, are least; `whole` is what fewer rows stand for."""
+    """Fit numbers so that residuals, over their bounds, are least; return them with their doubts.
+
+    Parameters
+    ----------
+    residuals : callable
+        Takes several sets of n numbers, (k, n), and returns the residuals of each, (k, m).
+    guess : list of n floats
+        To start from.
+    whole : callable, optional
+        Takes one set, (n,); what fewer rows stand for.
+    """
     from scipy import optimize
 
     scale = np.where(np.asarray(guess) == 0, 1.0, np.abs(guess))
+    last: dict[bytes, Array] = {}
 
-    def scaled(x: Array) -> Array:
-        return residual(x * scale)
+    def residual(x: Array) -> Array:
+        key = x.tobytes()
+        if key not in last:
+            last.clear()
+            last[key] = residuals(x[None] * scale)[0]
+        return last[key]
+
+    def slopes(x: Array) -> Array:
+        beside = x + np.diag(np.copysign(_STEP * np.maximum(np.abs(x), 1.0), x))
+        return (residuals(beside * scale) - residual(x)).T / np.diag(beside - x)
 
     try:
-        found = optimize.least_squares(scaled, np.asarray(guess) / scale, method="lm", max_nfev=60)
+        x0 = np.asarray(guess) / scale
+        if not np.isfinite(residual(x0)).all():
+            return None
+        # MINPACK without what SciPy's `least_squares` puts around each slope, which takes longer than the slope.
+        x = optimize.leastsq(residual, x0, Dfun=slopes, full_output=True, maxfev=_MOST_TRIED, **_ENOUGH)[0]
+        J = slopes(x)
     except (TrundleError, ValueError, ArithmeticError):
         return None
-    slopes = np.asarray(found.jac)
-    normal = slopes.T @ slopes
+    normal = J.T @ J
     if not np.isfinite(normal).all() or np.linalg.matrix_rank(normal) < len(guess):
         return None
     # As if all residuals were as far off as the worst that is left, and all together.
-    left = found.fun if whole is None else whole(found.x * scale)
+    left = residual(x) if whole is None else whole(x * scale)
     doubt = max(float(np.abs(left).max()), 1e-6) * np.sqrt(np.diag(np.linalg.inv(normal)) * left.size)
-    return found.x * scale, doubt * scale
+    return x * scale, doubt * scale
 
 
 def fitted(family: Family, system: RollingSystem, residual: Callable[[Suspect], Array]) -> Iterator[Suspect]:
     """Yield what a fit of one family suspects."""
     if not family.applies(system):
         return
-    found = least_squares(lambda numbers: residual(family.suspect(numbers)), family.guess(system))
+    found = least_squares(
+        lambda sets: np.array([residual(family.suspect(numbers)) for numbers in sets]), family.guess(system)
+    )
     if found is not None:
         yield from family.named(system, *found)
 

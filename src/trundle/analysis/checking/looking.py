@@ -68,11 +68,18 @@ class Seen:
 
 
 def seen(
-    one: Comparison, weights: Weights, theirs: ExternalTrajectory, at: Motion, place: Index, rates: Rates, open_: Open
+    one: Comparison,
+    weights: Weights,
+    slope: Array,
+    theirs: ExternalTrajectory,
+    at: Motion,
+    place: Index,
+    rates: Rates,
+    open_: Open,
 ) -> Seen:
-    """Return the mismatch of a comparison."""
+    """Return the mismatch of a comparison, from the mean slope of what they wrote."""
     f = one.rate(at, rates)[place]
-    mismatch, change = weights.mismatch(getattr(theirs, one.array), f)
+    mismatch, change = weights.mismatch(slope, f)
     bias = open_.bias + np.maximum(change - _BEYOND * np.sqrt(f.shape[-1]) * open_.by_chance, 0.0)
     if one.array in theirs.doubts:
         bias = bias + _doubtful(one.array, theirs, at.index[place], f)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -31,22 +32,22 @@ class Instants:
     orientation: Array
     contact: Contact
 
-    @property
+    @cached_property
     def offset(self) -> Array:
         """ρ, (m, 3), m."""
         return np.broadcast_to(self.contact.offset.array(), self.position.shape)
 
-    @property
+    @cached_property
     def carried(self) -> Array:
         """Velocity u of the support at the contact, (m, 3), m/s."""
         return np.broadcast_to(self.contact.support.material_velocity(self.contact.point).array(), self.position.shape)
 
-    @property
+    @cached_property
     def slip(self) -> Array:
         """Slip s = V + Ω×ρ − u, (m, 3), m/s."""
         return self.velocity + cross(self.angular_velocity, self.offset) - self.carried
 
-    @property
+    @cached_property
     def arm(self) -> float:
         """The largest |ρ|, m."""
         return float(np.linalg.norm(self.offset, axis=1).max())
@@ -248,7 +249,7 @@ def added_up(theirs: ExternalTrajectory, q0: tuple[float, ...]) -> tuple[Array, 
     """Return the orientation that their Ω adds up to, and the angle by which it may be off."""
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0)
-    return q, doubt_of(theirs.time, theirs.angular_velocity, gain)
+    return q, doubt_of(theirs.time, theirs.angular_velocity, gain, theirs.windows)
 
 
 def turned_to_space(theirs: ExternalTrajectory, q0: tuple[float, ...]) -> ExternalTrajectory:
@@ -256,7 +257,7 @@ def turned_to_space(theirs: ExternalTrajectory, q0: tuple[float, ...]) -> Extern
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)
     turned = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
-    doubt = doubt_of(theirs.time, turned, gain)
+    doubt = doubt_of(theirs.time, turned, gain, theirs.windows)
     doubts = {**theirs.doubts, "angular_velocity": doubt, "orientation": doubt}
     return replace(theirs, angular_velocity=turned, orientation=q, doubts=doubts)
 

@@ -8,6 +8,7 @@ next. A motion that repeats itself in a window looks like noise, too; it is told
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -73,6 +74,7 @@ def noise_of(time: Array, values: Array, known: Known) -> Noise:
     return Noise(index, spread, freedom, alike, step if np.median(spread) < _CUT * step else 0.0, rounding)
 
 
+@lru_cache
 def _spread(samples: int, count: int) -> Index:
     return np.unique(np.linspace(0, samples - 1, min(samples, count)).round().astype(int))
 

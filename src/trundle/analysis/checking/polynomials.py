@@ -24,10 +24,26 @@ class Polynomials:
 
     time: Array  # kept, so that no other array takes its place in memory, by which windows are found again
     index: Index
-    row: Array  # (m, width), gives the derivative
-    changes: tuple[Array, Array]  # what the last two degrees add to it, and what the two before them did
+    order: int  # of the derivative
+    here: Array  # (m,): where it is wanted, in half-widths from the middle
+    half: Array  # (m,): half-widths
     basis: Array  # (m, width, degree + 1), or (1, ...) where the samples are even
     inverse: Array
+
+    @cached_property
+    def row(self) -> Array:
+        """The weights that give the derivative, (m, width)."""
+        return self._row(self.inverse)
+
+    @cached_property
+    def changes(self) -> tuple[Array, Array]:
+        """What the last two degrees add to the weights, and what the two before them did."""
+        degree = self.basis.shape[2] - 1
+        fewer, fewest = (self._row(_pseudoinverse(self.basis[..., : degree + 1 - less])) for less in (2, 4))
+        return self.row - fewer, fewer - fewest
+
+    def _row(self, inverse: Array) -> Array:
+        return _row(self.here, inverse, self.order) / self.half[:, None] ** self.order
 
     @cached_property
     def correlations(self) -> Array:
@@ -58,9 +74,7 @@ def _windows(time: Array, centres: Index, order: int, degree: int, width: int) -
     here = (time[centres] - middle) / half
     even = x[:1] if float(np.abs(x - x[:1]).max()) < _EVEN else x
     basis = chebyshev.chebvander(even, degree)
-    inverses = [_pseudoinverse(basis[..., : degree + 1 - less]) for less in (0, 2, 4)]
-    row, fewer, fewest = (_row(here, inverse, order) / half[:, None] ** order for inverse in inverses)
-    return Polynomials(time, index, row, (row - fewer, fewer - fewest), basis, inverses[0])
+    return Polynomials(time, index, order, here, half, basis, _pseudoinverse(basis))
 
 
 def _pseudoinverse(basis: Array) -> Array:

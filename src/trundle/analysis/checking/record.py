@@ -51,7 +51,7 @@ class ExternalTrajectory:
     remarks: tuple[str, ...] = ()  # what was left out in reading
     source: str = ""  # where it comes from, for titles
     # What was worked out goes on to changed copies, by the arrays that it was worked out of.
-    _windows: Known = field(default_factory=dict, compare=False, repr=False)
+    windows: Known = field(default_factory=dict, compare=False, repr=False)
     _kept: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
 
     def slope(self, name: str, index: Index, order: int = 1, kept: float = 1.0) -> Estimate:
@@ -59,13 +59,13 @@ class ExternalTrajectory:
         time, values = self.time, getattr(self, name)
         own, key = (id(time), id(values)), (name, order, kept)
         if own not in self._kept:  # with the arrays, so that no others take their places in memory
-            self._kept[own] = noise_of(time, values, self._windows), time, values
+            self._kept[own] = noise_of(time, values, self.windows), time, values
         noise = self._kept[own][0]
         if key not in self._kept:  # changed copies bend as much: units and axes are what changes
-            self._kept[key] = best_fit(time, values, order, self._windows, noise, kept)
+            self._kept[key] = best_fit(time, values, order, self.windows, noise, kept)
         whole = (*own, *key, index.tobytes())
         if whole not in self._kept:
-            self._kept[whole] = derivative(time, values, index, order, self._windows, self._kept[key], noise)
+            self._kept[whole] = derivative(time, values, index, order, self.windows, self._kept[key], noise)
         return self._kept[whole]
 
     @property

@@ -87,12 +87,16 @@ class Weights:
     phi: Array
     fewer: Array
 
-    def mismatch(self, y: Array, f: Array) -> tuple[Array, Array]:
-        """Return the mean mismatch, and how much of it a polynomial of two degrees less through f would change."""
+    def slope(self, y: Array) -> Array:
+        """Return the mean slope, or bend, of what they wrote, (k, c)."""
         index = self.plan.start[:, None] + np.arange(self.plan.width)
         own = y[index] - y[index[:, self.plan.width // 2]][:, None]
-        mismatch = np.einsum("kn,knc->kc", self.row, own) - np.einsum("kp,kpc->kc", self.phi, f)
-        return mismatch, np.linalg.norm(np.einsum("kp,kpc->kc", self.fewer, f), axis=1)
+        return np.einsum("kn,knc->kc", self.row, own)
+
+    def mismatch(self, slope: Array, f: Array) -> tuple[Array, Array]:
+        """Return the mean mismatch, and how much of it a polynomial of two degrees less through f would change."""
+        changed = np.einsum("kp,kpc->kc", self.fewer, f)
+        return slope - np.einsum("kp,kpc->kc", self.phi, f), np.linalg.norm(changed, axis=1)
 
     def mean(self, f: Array) -> Array:
         """Return the mean of a rate over each window as a mismatch of it would be seen, (k, ...)."""
@@ -118,7 +122,8 @@ def weights_of(plan: Plan, time: Array, order: int) -> Weights:
     >>> t = np.linspace(0.0, 1.0, 40)
     >>> plan = next(plans(40)).thinned(1)
     >>> weights = weights_of(plan, t, 2)
-    >>> [round(float(weights.mismatch(3 * t[:, None] ** 2, np.full((1, 9, 1), f))[0][0, 0]), 9) for f in (0.0, 6.0)]
+    >>> slope = weights.slope(3 * t[:, None] ** 2)
+    >>> [round(float(weights.mismatch(slope, np.full((1, 9, 1), f))[0][0, 0]), 9) for f in (0.0, 6.0)]
     [6.0, -0.0]
     """
     index = plan.start[:, None] + np.arange(plan.width)
