@@ -22,20 +22,25 @@ export interface Drawn {
   /** Both axes alike. */
   square: boolean
   points: Line[]
+  /** What each line is, where they are several. */
+  called: string[]
 }
 
+const FITTED = '--series-2'
+const MEASURED = ['--series-1', '--series-3', '--series-4', '--series-5']
 const LASTS = 1600 // ms, of the way of a fit
 
 /** The path where x and y were measured, else each column over time. */
 export function drawnOf(columns: TrackColumns, units: Record<string, string>): Drawn {
   const { t = [], x, y, ...others } = columns
-  if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)] }
+  if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)], called: [] }
   const rest = Object.entries(x ? { x, ...others } : y ? { y, ...others } : others)
   const names = rest.map(([name]) => name)
   return {
     names: ['t, s', told(names, units)],
     square: false,
     points: rest.map(([, column]) => paired(t, column)),
+    called: names.length > 1 ? names : [],
   }
 }
 
@@ -99,7 +104,8 @@ export function createPlot(): Plot {
   })
   const said = h('output', { for: id, class: 'number', 'data-testid': 'fit-said' })
   const steps = h('div', { class: 'dial', hidden: true }, h('label', { for: id }, 'Step of the fit'), said, step)
-  const element = h('div', { class: 'measure-plot', 'data-empty': true }, canvas, steps)
+  const legend = h('p', { class: 'measure-legend' })
+  const element = h('div', { class: 'measure-plot', 'data-empty': true }, canvas, legend, steps)
   let track: Pick<Track, 'columns' | 'units'> | null = null
   let found: Way | null = null
   let frame = 0
@@ -132,7 +138,22 @@ export function createPlot(): Plot {
     context.scale(ratio, ratio)
     const drawn = drawnOf(track.columns, track.units)
     const line = found ? stepOf(found, Number(step.value), track.units) : null
+    tellApart(drawn, line !== null)
     draw(context, box.width, box.height, drawn, line, canvas)
+  }
+
+  function tellApart({ called }: Drawn, fit: boolean): void {
+    const key = (series: string, words: string, kind: string) => {
+      const sample = h('span', { class: `measure-key ${kind}`, 'aria-hidden': true })
+      sample.style.background = `var(${series})`
+      return h('span', {}, sample, words)
+    }
+    const names = called.length ? called.map((name) => t('{name}, measured', { name })) : ['measured']
+    fill(
+      legend,
+      names.map((words, i) => key(MEASURED[i % MEASURED.length]!, words, 'points')),
+      fit ? key(FITTED, 'the fit', 'line') : null,
+    )
   }
 
   const watcher = new ResizeObserver(() => paint())
@@ -220,14 +241,15 @@ function draw(
   context.beginPath()
   context.rect(EDGE.left, EDGE.top, wide, high)
   context.clip()
-  context.fillStyle = read('--series-1')
-  for (const points of drawn.points)
+  drawn.points.forEach((points, i) => {
+    context.fillStyle = read(MEASURED[i % MEASURED.length]!)
     for (const point of points) {
       if (!point) continue
       const [x, y] = at(point)
       context.fillRect(x - 1.5, y - 1.5, 3, 3)
     }
-  context.strokeStyle = read('--series-2')
+  })
+  context.strokeStyle = read(FITTED)
   context.lineWidth = 2
   for (const points of line?.points ?? []) {
     context.beginPath()
