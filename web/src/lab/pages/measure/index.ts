@@ -1,5 +1,5 @@
 /** From a track that was measured to numbers with errors, and what they cannot tell. */
-import { shownDigits, typedDigits } from '../../../languages/translate'
+import { shownDigits, t, typedDigits } from '../../../languages/translate'
 import { put, say } from '../../../viewer/elements'
 import {
   ApiError,
@@ -167,7 +167,8 @@ export const measure: Page = {
         reading.ask(null)
         took(answer)
       },
-      failed: (error) => tell(error),
+      failed: (error, { file, name }) =>
+        tell(error instanceof ApiError && error.status === 413 ? tooLarge(file, name) : error),
       state: (busy) => host.firstElementChild?.toggleAttribute('data-busy', busy),
     })
 
@@ -361,10 +362,17 @@ export const measure: Page = {
   },
 }
 
+function tooLarge(file: Blob, name: string): Error {
+  const size = (file.size / 2 ** 20).toFixed(0)
+  const words =
+    '{title} has {size} MiB, more than the lab reads. Leave out rows, or use trundle fit, which takes them all.'
+  return new Error(t(words, { title: name, size }))
+}
+
 /** Where the body was seen, on the support: along x where only that was measured. */
-function placesOf({ columns: { t = [], x, y, z } }: Track): [number, number][] | [number, number, number][] {
+function placesOf({ columns: { t: times = [], x, y, z } }: Track): [number, number][] | [number, number, number][] {
   if (!x && !y) return []
-  const rows = t.map((_, i): (number | null)[] => [x ? x[i]! : 0, y ? y[i]! : 0, ...(z ? [z[i]!] : [])])
+  const rows = times.map((_, i): (number | null)[] => [x ? x[i]! : 0, y ? y[i]! : 0, ...(z ? [z[i]!] : [])])
   return rows.filter((row) => row.every((part) => part !== null)) as [number, number][]
 }
 
