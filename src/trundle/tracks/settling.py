@@ -117,7 +117,7 @@ class Reading:
             shown = ", ".join(dict.fromkeys(filter(None, headings)))
             rule = "must hold time and position"
             lacking = [name for name in ("t", "x", "y") if name not in found]
-            remedy = f"Name them: columns {lacking[0]}=HEADING."
+            remedy = f"Name them: --columns '{lacking[0]}=HEADING'."
             received = f"no column for {', '.join(lacking)} among {shown}"
             raise InvalidValueError("columns", rule, received[:400], remedy)
         return found
@@ -179,7 +179,7 @@ class Reading:
         others = ", ".join(heading for heading in self.left_out) or "none"
         rule = "must hold time and position, or another quantity that is measured"
         raise InvalidValueError("columns", rule, f"no column but the time; others: {others}"[:400],
-                                "Name them: columns x=HEADING.")  # fmt: skip
+                                "Name them: --columns 'x=HEADING'.")  # fmt: skip
 
     def _factor(self, unit: str, kind: str | None, column: Column) -> float:
         if _in_pixels(unit):
