@@ -77,8 +77,9 @@ class Estimate:
         """Its value with its error, its unit, and a remark."""
         if self.state == "limit" and self.alone is not None and self.alone_sigma is not None:
             beyond = self.alone - self.value
-            if abs(beyond) > _SAYS * self.alone_sigma:  # as far as this, a straight line from the limit tells no value
-                return f"{self.value:.6g}", self.unit, f"at its limit; the data ask for {'more' if beyond > 0 else 'less'}"
+            if abs(beyond) > _SAYS * self.alone_sigma:  # so far off a straight line from the limit tells no value
+                asked = "more" if beyond > 0 else "less"
+                return f"{self.value:.6g}", self.unit, f"at its limit; the data ask for {asked}"
             return f"{self.value:.6g}", self.unit, f"at its limit; the data say {pm(self.alone, self.alone_sigma)}"
         if self.sigma is None:
             known = "held: the data do not fix it" if self.state == "held" else "only together, see below"
