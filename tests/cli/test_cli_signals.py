@@ -180,3 +180,18 @@ sys.exit(importlib.import_module("trundle_command").main())
         [sys.executable, "-c", f"import importlib{script}"], capture_output=True, text=True, timeout=60, check=False
     )
     assert (found.returncode, found.stderr) == (130, "trundle: interrupted\n")
+
+
+def test_an_interrupt_on_the_way_out_is_heard_by_nobody() -> None:
+    """Python waits for threads first: a Ctrl-C there is "Exception ignored", unless none is heard any more."""
+    script = """
+import signal, sys, threading
+threading._register_atexit(lambda: signal.raise_signal(signal.SIGINT))
+sys.argv = ["trundle", "list"]
+import trundle_command
+trundle_command.main()
+"""
+    found = subprocess.run(  # noqa: S603
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (found.returncode, found.stderr) == (0, "")
