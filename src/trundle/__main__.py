@@ -1,5 +1,5 @@
 """`python -m trundle` is the `trundle` command."""
 
-from .cli import main
+from trundle_command import main
 
 main()

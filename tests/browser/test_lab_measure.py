@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 import trundle as tr
 from trundle.lab.links import encode
@@ -147,6 +147,32 @@ def test_what_is_no_track_is_refused_in_words(visitor: Visitor) -> None:
     expect(page.get_by_test_id("question")).to_contain_text("Which column is which?")
     expect(page.get_by_test_id("wrong")).to_be_hidden()
     expect(page.get_by_test_id("fit")).to_be_disabled()
+
+
+def test_a_fit_waits_for_what_moved_and_ends_with_its_track(visitor: Visitor) -> None:
+    """The numbers of the example before are not fitted to this one, and an answer to it is shown to nobody."""
+    page = visitor.open("#/measure?example=ball-in-a-bowl", drawn=False)
+    expect(page.get_by_role("checkbox", name="Support: Radius")).to_be_checked()
+    expect(page.get_by_test_id("fit-stop")).to_be_hidden()
+    page.route("**/api/fit", lambda _: None)
+    page.get_by_test_id("fit").click()
+    page.get_by_test_id("fit-stop").click()
+    expect(page.get_by_test_id("fit")).to_be_enabled()
+    expect(page.get_by_test_id("fit")).to_be_focused()
+    page.get_by_test_id("fit").click()
+    expect(page.get_by_test_id("fit-stop")).to_be_visible()
+    numbers: list[Route] = []
+    page.route("**/api/map/numbers", lambda route: numbers.append(route))
+    page.get_by_role("button", name="A ball on a ramp").click()
+    expect(page.get_by_test_id("said")).to_contain_text("180 rows")
+    expect(page.get_by_test_id("fit-stop")).to_be_hidden()
+    expect(page.get_by_test_id("fit")).to_be_disabled()
+    for one in numbers:
+        one.continue_()
+    expect(page.get_by_role("checkbox", name="Body: Inertia ratio k")).to_be_checked()
+    page.unroute_all()
+    fit(page)
+    expect(page.get_by_test_id("fitted")).to_contain_text("Inertia ratio")
 
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE], ids=["laptop", "phone"])

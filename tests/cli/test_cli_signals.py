@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import signal
+import subprocess
+import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -158,3 +161,37 @@ def test_what_is_ignored_stays_ignored() -> None:
             signal.raise_signal(signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_an_interrupt_while_the_package_is_imported_is_said_in_a_word() -> None:
+    """As the console script calls it, with a Ctrl-C at the first import of the package's own."""
+    script = """
+import signal, sys
+class Interrupting:
+    def find_spec(self, name, *more):
+        if name == "trundle":
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Interrupting())
+sys.exit(importlib.import_module("trundle_command").main())
+"""
+    entry = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))["project"]["scripts"]
+    assert entry == {"trundle": "trundle_command:main"}
+    found = subprocess.run(  # noqa: S603
+        [sys.executable, "-c", f"import importlib{script}"], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (found.returncode, found.stderr) == (130, "trundle: interrupted\n")
+
+
+def test_an_interrupt_on_the_way_out_is_heard_by_nobody() -> None:
+    """Python waits for threads first: a Ctrl-C there is "Exception ignored", unless none is heard any more."""
+    script = """
+import signal, sys, threading
+threading._register_atexit(lambda: signal.raise_signal(signal.SIGINT))
+sys.argv = ["trundle", "list"]
+import trundle_command
+trundle_command.main()
+"""
+    found = subprocess.run(  # noqa: S603
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (found.returncode, found.stderr) == (0, "")

@@ -147,6 +147,47 @@ def test_an_incline_tells_the_slope_by_the_ratio() -> None:
     assert off(tr.fit(data, slope, [K], noise="1 mm"), K, 0.4) < 4
 
 
+@pytest.mark.parametrize(("tilt", "ratio"), [(0.06, 0.4), (0.12, 0.4), (0.03, 0.6), (0.05, 0.65)])
+def test_it_does_so_where_the_given_slope_would_ask_for_a_ratio_that_no_ball_has(tilt: float, ratio: float) -> None:
+    """With the slope held as the scenario has it, k would have to leave 0 to 2/3, and the fit would be bad."""
+    t = np.linspace(0.0, 3.0, 200)
+    slope = scenario(body=ball(ratio), support={"kind": "plane", "tilt": tilt})
+    found = tr.fit(seen(t, NOISE, 8, x=down_incline(t, 0.05, 0.4, 0.1)), slope, [K, TILT], noise=NOISE)
+    assert found.answer == "cannot decide"
+    assert found[K].sigma is None
+    assert found[TILT].sigma is None
+    (fixed,) = only(found, K).combinations
+    assert fixed.text == f"sin({TILT})/(1 + {K})"
+    assert abs(fixed.value - np.sin(0.05) / 1.4) < 4 * fixed.sigma
+
+
+def test_a_hoop_is_no_ball_of_any_ratio() -> None:
+    t = np.linspace(0.0, 3.0, 200)
+    slope = scenario(body=ball(0.5), support={"kind": "plane", "tilt": 0.05})
+    found = tr.fit(seen(t, 1e-3, 4, x=down_incline(t, 0.05, 1.0)), slope, [K], noise="1 mm")
+    assert found.answer == "bad"
+    assert found[K].cells[2] == "at its limit; the data ask for more"
+
+
+def test_laws_that_do_as_well_as_each_other_are_named_together() -> None:
+    """A push against the motion, as resistance makes it; too short and too noisy to be told from drag of air."""
+    t = np.linspace(0.0, 2.0, 240)
+    x = 0.5 * t - 0.5 * 0.004 * 9.80665 / 1.4 * t**2
+    told = tr.fit(seen(t, 1e-3, 2, x=x, y=0 * t), scenario(), [], noise="1 mm").compare()
+    assert {"resistance to rolling", "drag of air at rest"} <= {one.words for one in told.rivals}
+    assert "these data do not tell which" in told.verdict
+    assert "still" not in told.verdict
+
+
+def test_the_best_of_bad_laws_is_said_to_be_bad() -> None:
+    """Drag by the square of the speed, for which there is none: ln(1 + cvt)/c in place of a straight line."""
+    t = np.linspace(0.0, 4.0, 300)
+    x = np.log1p(0.2 * t) / 0.2
+    told = tr.fit(seen(t, 1e-3, 3, x=x, y=0 * t), scenario(), [], noise="1 mm").compare()
+    assert told.best is not None
+    assert "but not well: χ²/dof is still" in told.verdict
+
+
 HOLLOWS = {
     "bowl": ({"kind": "bowl"}, {"position": [0.05, 0.0]}),
     "cylinder": ({"kind": "cylinder", "tilt": np.pi / 2}, {"position": [0.5, 0.0]}),

@@ -186,7 +186,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     derivatives,
     fitted,
     lambda: fitted().sample(steps=20, walkers=20),
-    lambda: Alternatives(TITLE, (Alternative("drag", 12.5, 3, 25.0, (("loads[0].coefficient", 0.5, 0.25),)),)),
+    lambda: Alternatives(TITLE, (Alternative("drag", 12.5, 3, 10, 25.0, (("loads[0].coefficient", 0.5, 0.25),)),)),
     lambda: tr.plan_fit(scenario("tilted-turntable"), "support.tilt", durations=[2.0], rates=[10]),
     derivation,
     lambda: derivation().steps[0],

@@ -318,7 +318,8 @@ EXAMPLES: list[Example] = [
     Example("vernier", "VernierVideoAnalysis", "film.csv", _text(VERNIER), {}, PLACES | {"vy": [0.1, 0.2, NAN, 0.3]}),
     Example("capstone", "Capstone", "lab.csv", _text(CAPSTONE), {"track": "Run #2"}),
     Example("capstone-two-lines", "Capstone", "lab.txt", _text(CAPSTONE_TWO), {"track": "Run #2"}),
-    Example("phyphox", "Phyphox", "Raw Data.csv", _text(PHYPHOX), {}, GYROSCOPE, "wx from `Gyroscope x (rad/s)`"),
+    Example("phyphox", "Phyphox", "Raw Data.csv", _text(PHYPHOX), {}, GYROSCOPE,
+            "in rad/s, 4 rows, no gaps, 25 samples a second"),
     Example("phyphox-tab", "Phyphox", "a.csv", _text(PHYPHOX.replace(",", "\t").replace(".", ",")), {}, GYROSCOPE),
     Example("phyphox-zip", "Phyphox", "Gyroscope.zip",
             zipped(**{"Raw Data.csv": _text(PHYPHOX), "meta/time.csv": b'"event","system time"\n"START",1.6E9\n'}),
@@ -331,11 +332,13 @@ EXAMPLES: list[Example] = [
     Example("deeplabcut-hdf5", "DeepLabCutHDF5", "ballDLC.h5", deeplabcut_hdf5(), PIXELS | {"track": "ball"}),
     Example("sleap", "Sleap", "ball.analysis.h5", sleap(), PIXELS | {"track": "second/centre"}),
     Example("csv", "PlainTable", "track.csv", _text(CSV), {}, says="x, y in cm"),
+    Example("strokes", "PlainTable", "track.csv", _text(CSV.replace("t,x (cm),y (cm)", "Zeit/s,x/cm,y / cm")), {},
+            says="t from column `Zeit/s`, x, y in cm"),
     Example("tsv", "PlainTable", "track.tsv", _text(CSV.replace(",", "\t")), {}),
     Example("csv-bom", "PlainTable", "track.csv", b"\xef\xbb\xbf" + _text(CSV).replace(b"\n", b"\r\n"), {}),
     Example("units-row", "PlainTable", "track.csv", _text(UNITS), {}, says="t from column `time` in ms, x, y in mm"),
     Example("excel", "PlainTable", "track.xlsx", workbook(Sheet=cells(CSV)), {}),
-    Example("netcdf", "NetCDF", "track.nc", netcdf(), {}),
+    Example("netcdf", "NetCDF", "track.nc", netcdf(), {}, says="seen from the turning support"),
 ]  # fmt: skip
 
 

@@ -6,7 +6,6 @@ cannot decide; 130, interrupted; 1, anything else.
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import gc
 import os
@@ -14,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from .signals import INTERRUPTED, Ending, deaf, ending
+from .signals import INTERRUPTED, Ending, ending
 
 OTHER, BAD_INPUT, CARD_FAILED, CANNOT_DECIDE = 1, 2, 3, 4
 
@@ -41,7 +40,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
             with contextlib.suppress(OSError, ValueError):
                 stream.flush()
         os._exit(status)
-    atexit.register(deaf)
     sys.exit(status)
 
 

@@ -121,7 +121,10 @@ def fit(
         DATA: found.save,
         FIGURE: lambda path: found.plot().savefig(path),
         PAGE: found.save_html,
-        **{name: lambda path, form=form: path.write_text(found.table(form)) for form, name in TABLES.items()},
+        **{
+            name: lambda path, form=form: path.write_text(f"{found.table(form)}\n", encoding="utf-8")
+            for form, name in TABLES.items()
+        },
     }
     written = write_together(folder, {name: writers[name] for name in files})
     if as_json:

@@ -212,7 +212,8 @@ def _measuring(app: FastAPI, lab: Lab) -> None:
     async def fit(request: Request, asked: ToFit) -> Response:
         view = None if asked.view is None else asked.view.model_dump()
         wanted = asked.columns, asked.free, asked.noise, asked.title, asked.accuracy, view
-        return await lab.answer(request, measuring.fitted, asked.scenario, *wanted, slow=True)
+        most = lab.settings.fit_time
+        return await lab.answer(request, measuring.fitted, asked.scenario, *wanted, slow=True, most=most)
 
 
 def _filming(app: FastAPI, lab: Lab) -> None:

@@ -111,7 +111,7 @@ def read(content: bytes, how: Mapping[str, Any], folder: str) -> Answer:
     path = Path(folder) / f"{slug(Path(name).stem)}{ending}"
     path.write_bytes(content)
     try:
-        return as_json(track_told(read_track(path, **_options(how))))
+        return as_json(track_told(read_track(path, **_options(how))) | {"title": name})
     except UnknownNameError as error:
         raise refused(422, str(error), "track" if how.get("track") else "columns") from None
     except InvalidValueError as error:

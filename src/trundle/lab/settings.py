@@ -71,6 +71,8 @@ class Settings:
         How long a film is kept that nobody asks for, s.
     film_time : float
         The most that a ball is followed through a film, s.
+    fit_time : float
+        The most that a fit may take, s: a first one has its equations to compile.
     sending_time : float
         How long an answer may wait to be read on, s.
     idle_time : float
@@ -115,6 +117,7 @@ class Settings:
     film_reading_time: float = 120.0
     film_life: float = 1800.0
     film_time: float = 240.0
+    fit_time: float = 60.0
     static: Path = Path(__file__).resolve().parent.parent / "views" / "viewer" / "static"
 
     def body_bounds(self, path: str) -> tuple[int, float]:

@@ -16,7 +16,7 @@ _VECTOR = {
 }
 _QUATERNION = ("q", "q_", "quat_", "quaternion_", "orientation_", "rot_", "ori_")
 ALIASES: dict[str, tuple[str, ...]] = {
-    "t": ("t", "time", "times", "timestamp", "sec", "seconds", "sim_time"),
+    "t": ("t", "time", "times", "timestamp", "sec", "seconds", "sim_time", "zeit", "temps", "tiempo", "tempo"),
     "frame": ("frame", "frames", "frame_number", "frame_index", "frame_idx"),
     "angle": ("angle", "theta", "phi"),
     # A mark on the table, and a spot on the body, beside the centre of it.
@@ -110,22 +110,25 @@ def recognise(headings: Iterable[str]) -> dict[str, tuple[str, str]]:
                 "columns",
                 f"must name one column each; two could be `{column}`",
                 f"{found[column][0]!r} and {heading!r}",
-                f"Say which: columns {column}={heading}.",
+                f"Say which: --columns '{column}={heading}'.",
             )
         found[column] = (str(heading), unit)
     return found
 
 
 def apart(heading: str) -> tuple[str, str]:
-    """Return a heading and the unit in brackets behind it.
+    """Return a heading and the unit behind it, in brackets or, as ISO 80000 has it, after a stroke.
 
     Examples
     --------
-    >>> apart("x [mm]"), apart("x")
-    (('x', 'mm'), ('x', ''))
+    >>> apart("x [mm]"), apart("x"), apart("x/mm"), apart("vx/(m/s)"), apart("dx/dt")
+    (('x', 'mm'), ('x', ''), ('x', 'mm'), ('vx', 'm/s'), ('dx/dt', ''))
     """
-    bracketed = _BRACKETS.match(heading.strip())
-    return (bracketed[1], bracketed[2]) if bracketed else (heading.strip(), "")
+    heading = heading.strip()
+    if bracketed := _BRACKETS.match(heading):
+        return bracketed[1].removesuffix("/").rstrip(), bracketed[2]
+    name, _, unit = (part.strip() for part in heading.partition("/"))
+    return (name, unit) if name and is_unit(unit) else (heading, "")
 
 
 def _split(heading: str, known: Mapping[str, str]) -> tuple[str, str]:

@@ -178,7 +178,8 @@ def _chosen(tables: Sequence[Table], name: str | None, source: str) -> Table:
     if name is None and len(tables) == 1:
         return tables[0]
     if not tables:
-        raise InvalidValueError("file", "must hold a track", source, "There is none in it.")
+        remedy = "It has no places and no rates: export these with their times."
+        raise InvalidValueError("file", "must hold a track", source, remedy)
     if name is None:
         shown = ", ".join(known[:_TRACKS]) + (f" and {len(known) - _TRACKS} more" if len(known) > _TRACKS else "")
         rule = "must be named where a file holds several"

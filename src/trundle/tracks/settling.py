@@ -17,6 +17,7 @@ from .sentence import sentence
 from .table import NOT_USED, Column, Table
 from .track import Array, Track
 
+_FRAME_SAID = {"world": "seen from the room", "corotating": "seen from the turning support"}
 FRAMES, AXES = ("support", "world", "corotating"), ("space", "body")
 _UPWARDS = ("y", "vy", "mark_y", "spot_y")  # what turns its sign with y
 _STEP = 1.0  # nobody films a ball once a second: times without a unit in such steps are more often frames or ms
@@ -116,7 +117,7 @@ class Reading:
             shown = ", ".join(dict.fromkeys(filter(None, headings)))
             rule = "must hold time and position"
             lacking = [name for name in ("t", "x", "y") if name not in found]
-            remedy = f"Name them: columns {lacking[0]}=HEADING."
+            remedy = f"Name them: --columns '{lacking[0]}=HEADING'."
             received = f"no column for {', '.join(lacking)} among {shown}"
             raise InvalidValueError("columns", rule, received[:400], remedy)
         return found
@@ -178,7 +179,7 @@ class Reading:
         others = ", ".join(heading for heading in self.left_out) or "none"
         rule = "must hold time and position, or another quantity that is measured"
         raise InvalidValueError("columns", rule, f"no column but the time; others: {others}"[:400],
-                                "Name them: columns x=HEADING.")  # fmt: skip
+                                "Name them: --columns 'x=HEADING'.")  # fmt: skip
 
     def _factor(self, unit: str, kind: str | None, column: Column) -> float:
         if _in_pixels(unit):
@@ -239,7 +240,10 @@ class Reading:
 
     def _taken(self, data: Any, units: Mapping[str, str]) -> str:
         """Say what was taken for what."""
-        said = [sentence(data, units, self.unit_of_time, "frame" if self.film else "sample")]
+        filmed = self.film and (self.table.axes or self.axes) != "body"
+        said = [sentence(data, units, self.unit_of_time, "frame" if filmed else "sample")]
+        if self._frame != "support":
+            said.append(_FRAME_SAID[self._frame])
         if self._down:
             said.append("y turned up")
         if "angle" in units and self._clockwise:

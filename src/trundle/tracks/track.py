@@ -147,7 +147,7 @@ class Track(Plottable):
         for name in self.columns:
             values, attributes = self[name], self.data[name].attrs
             some = values[np.isfinite(values)]
-            extent = f"{some.min():.6g} to {some.max():.6g}" if some.size else "no number"
+            extent = f"{some.min() + 0.0:.6g} to {some.max() + 0.0:.6g}" if some.size else "no number"
             empty = str(values.size - some.size)
             shown.append((name, str(attributes["units"]), str(attributes["heading"]), extent, empty))
         return shown

@@ -13,6 +13,7 @@ function setUp(patience = 100) {
   const jobs: Job[] = []
   const done: string[] = []
   const failed: string[] = []
+  const busy: boolean[] = []
   let waiting: (() => void)[] = []
   const clock = { now: 0 }
   const runner = createRunner<number, string>({
@@ -23,6 +24,7 @@ function setUp(patience = 100) {
       }),
     done: (answer) => done.push(answer),
     failed: (error) => failed.push(String(error)),
+    state: (now) => busy.push(now),
     soon: (callback) => waiting.push(callback),
     now: () => clock.now,
   })
@@ -31,7 +33,7 @@ function setUp(patience = 100) {
     waiting = []
     for (const callback of due) callback()
   }
-  return { runner, jobs, done, failed, begin, clock }
+  return { runner, jobs, done, failed, busy, begin, clock }
 }
 
 const settled = () => new Promise((resolve) => setTimeout(resolve))
@@ -104,14 +106,17 @@ it('tells of an error, but not of one that is old', async () => {
 })
 
 it('says nothing more once it is stopped', async () => {
-  const { runner, jobs, done, begin } = setUp()
+  const { runner, jobs, done, busy, begin } = setUp()
   runner.ask(1)
   begin()
   runner.stop()
+  expect(busy).toEqual([true, false])
   jobs[0]!.finish('one')
   await settled()
   expect(jobs[0]!.signal.aborted).toBe(true)
   expect(done).toEqual([])
+  runner.stop()
+  expect(busy).toEqual([true, false])
 })
 
 it('keeps one request in a lane, and lanes apart', () => {

@@ -78,8 +78,10 @@ export function createRunner<Request, Answer>(options: RunnerOptions<Request, An
     stop() {
       waiting = null
       clearTimeout(timer)
-      running?.controller.abort()
+      if (!running) return
+      running.controller.abort()
       running = null
+      options.state?.(false)
     },
   }
 }

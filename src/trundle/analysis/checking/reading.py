@@ -94,7 +94,7 @@ def _arrays(columns: dict[str, Array], conventions: Conventions, track: Track) -
             "columns",
             "must hold time and position",
             f"no column for {', '.join(missing)} among {', '.join([*columns, *track.left_out])}",
-            f"Name them: columns {missing[0]}=HEADING.",
+            f"Name them: --columns '{missing[0]}=HEADING'.",
         )
     height = "z" in columns
     z = columns["z"] if height else np.zeros_like(columns["x"])

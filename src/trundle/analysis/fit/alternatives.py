@@ -12,6 +12,7 @@ from ...display import Displayed, Headline, Markup, paragraph, table
 from ...errors import TrundleError
 from ...scenario import ScenarioFile
 from ...solve.samples import Array
+from .judging import ENOUGH
 from .minimising import minimise
 from .problem import Problem
 from .undetermined import pm
@@ -125,6 +126,8 @@ class Alternative:
         Of its own fit.
     numbers : int
         Fitted.
+    freedom : int
+        How many more values were measured.
     gain : float
         By which Akaike's criterion is less than that of the fit: more than 10 is plainly better.
     values : tuple of (str, float, float)
@@ -134,6 +137,7 @@ class Alternative:
     words: str
     chi_square: float
     numbers: int
+    freedom: int
     gain: float
     values: tuple[tuple[str, float, float], ...]
 
@@ -141,7 +145,7 @@ class Alternative:
     def cells(self) -> tuple[str, ...]:
         """A row of the table."""
         told = ", ".join(f"{key} = {pm(value, sigma)}" for key, value, sigma in self.values)
-        return self.words, f"{self.chi_square:.5g}", str(self.numbers), f"{-self.gain:+.4g}", told
+        return self.words, f"{self.chi_square:.5g}", str(self.numbers), f"{round(-self.gain, 6) + 0.0:+.4g}", told
 
 
 @dataclass(frozen=True, repr=False)
@@ -154,6 +158,8 @@ class Alternatives(Displayed):
         Of the scenario.
     each : tuple of Alternative
         In the order of Akaike's criterion.
+    noise_known : bool
+        Whether χ² says how well each explains the data.
 
     Examples
     --------
@@ -162,6 +168,7 @@ class Alternatives(Displayed):
 
     title: str
     each: tuple[Alternative, ...]
+    noise_known: bool = True
 
     @property
     def best(self) -> Alternative | None:
@@ -169,11 +176,26 @@ class Alternatives(Displayed):
         return self.each[0] if self.each and self.each[0].gain > _PLAIN else None
 
     @property
+    def rivals(self) -> tuple[Alternative, ...]:
+        """Those plainly better than the fit that these data do not plainly tell from the best, itself the first."""
+        if self.best is None:
+            return ()
+        return tuple(one for one in self.each if one.gain > max(_PLAIN, self.best.gain - _PLAIN))
+
+    @property
     def verdict(self) -> str:
         """What may be missing."""
         if self.best is None:
             return "nothing that was tried explains the data plainly better"
-        return f"{self.best.words} explains the data plainly better (AIC {-self.best.gain:+.4g})"
+        *others, last = (one.words.partition(",")[0] for one in self.rivals)
+        either = f"{', '.join(others)} or {last}" if others else last
+        said = f"{either} explains the data plainly better (AIC {-self.best.gain:+.4g})"
+        if others:
+            said += "; these data do not tell which"
+        reduced = self.best.chi_square / max(self.best.freedom, 1)
+        if self.noise_known and reduced > 1 + ENOUGH * np.sqrt(2 / max(self.best.freedom, 1)):
+            said += f", but not well: χ²/dof is still {reduced:.4g}"
+        return said
 
     def __str__(self) -> str:
         rows = [HEADINGS, *(one.cells for one in self.each)]
@@ -192,7 +214,8 @@ class Alternatives(Displayed):
 def compare(fit: Fit) -> Alternatives:
     """Return the fits with something added, the best first."""
     found = [one for one in (tried(fit, idea) for idea in IDEAS) if one is not None]
-    return Alternatives(fit.title, tuple(sorted(found, key=lambda one: -one.gain)))
+    each = tuple(sorted(found, key=lambda one: -one.gain))
+    return Alternatives(fit.title, each, fit.judgement.noise_known)
 
 
 def tried(fit: Fit, idea: _Idea) -> Alternative | None:
@@ -242,7 +265,7 @@ def _compared(
         for j, one in enumerate(other.unknowns)
         if j >= count
     )
-    return Alternative(idea.words, chi, numbers, gain, told)
+    return Alternative(idea.words, chi, numbers, size - numbers, gain, told)
 
 
 def _number(scenario: ScenarioFile, key: str) -> float:

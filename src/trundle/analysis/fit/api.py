@@ -32,6 +32,7 @@ from .unrolled import aligned, mounted, unrolled
 
 _MOST_LIMITS = 8
 _PLAINLY = 3.0  # χ²/dof
+_RATHER = 100.0  # times as gladly held: a number that else leaves what a file may hold
 _CERTAIN = 25.0  # χ² by which motion must beat rest, for each number fitted, to be motion
 _DIMENSIONS = {unit: kind for kind, (unit, _) in reversed(UNITS.items())}
 
@@ -275,18 +276,26 @@ def _with_pivots(
     problem: Problem, found: Minimum, guess: Array, held: Array, loss: str, *, staged: bool
 ) -> tuple[Minimum, list[int]]:
     """Return the minimum again with one number of each direction that is free held where the fit began."""
-    pivots: list[int] = []
-    for null in (found.directions.free, found.directions.weak):
-        if null.shape[1]:
-            _, jacobian = problem.both(found.values)
-            scale = alone(jacobian)
-            pivots += echelon(null, scale, preference(problem.unknowns, null, scale))[1]
-    if not pivots:
-        return found, pivots
-    values, held = found.values.copy(), held.copy()
-    values[pivots] = guess[pivots]
-    held[pivots] = True
-    return minimise(problem, values, held, loss, staged=staged), pivots
+    beyond: dict[int, float] = {}
+    for _ in range(2):
+        pivots: list[int] = []
+        for null in (found.directions.free, found.directions.weak):
+            if null.shape[1]:
+                _, jacobian = problem.both(found.values)
+                scale = alone(jacobian)
+                liked = preference(problem.unknowns, null, scale)
+                liked[[*beyond]] *= _RATHER
+                pivots += echelon(null, scale, liked)[1]
+        if not pivots:
+            return found, pivots
+        values, holding = found.values.copy(), held.copy()
+        values[pivots] = guess[pivots]
+        holding[pivots] = True
+        there = minimise(problem, values, holding, loss, staged=staged)
+        beyond = _beyond(problem, there.values, pivots)
+        if not beyond:  # else another number of a free direction is held, for which there may be a motion
+            break
+    return there, pivots
 
 
 def alone(jacobian: Array) -> Array:

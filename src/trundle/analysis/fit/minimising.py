@@ -19,6 +19,7 @@ _LONGER = 3.0  # times, from one stretch to the next
 _AS_SAID = 0.3  # share of a change that derivatives may miss and still do
 _FIRST = 1e-2  # of MINPACK's first step, a hundred over this: in standard deviations, as far as a guess may be off
 _THERE = 1e-3  # standard deviations
+_NEAR = 0.3  # standard deviations
 _ROUNDS = 5  # in which the directions are found again
 _STAGE, _LAST = 20, 60  # trials
 
@@ -57,27 +58,46 @@ def minimise(
         evaluations += result.nfev
         again = look(problem, values, held)
         same, found_before, found = again.basis.shape[1] == rank, found, again
-        if same and (loss != "linear" or _left(problem, values, found) < _THERE):
+        there = values if loss != "linear" else _close_by(problem, values, found)
+        if same and there is not None:
+            values = there
             break
-    covariance = _covariance(result, found_before.basis, found, loss)
+    covariance = _covariance(problem, result, found_before.basis, found, loss)
     return Minimum(values, found, covariance, result, evaluations)
 
 
-def _covariance(result: Any, basis: Array, found: Directions, loss: str) -> Array:
+def _covariance(problem: Problem, result: Any, basis: Array, found: Directions, loss: str) -> Array:
     """Return lmfit's covariance of the combinations as that of the unknowns.
 
-    Where something is free, the directions turn on the way; then it is taken from those at the minimum.
+    Where something is free, the directions turn on the way, and where derivatives were mended, lmfit's last are not
+    exact: then it is taken from those at the minimum.
     """
-    whole = found.free.shape[1] + found.weak.shape[1] == 0 or loss != "linear"
+    exact = found.free.shape[1] + found.weak.shape[1] == 0 and problem.by_formula
+    whole = exact or loss != "linear"
     if getattr(result, "covar", None) is None or basis.shape[1] != found.basis.shape[1] or not whole:
         return found.covariance
     return np.asarray(basis @ result.covar @ basis.T)
 
 
-def _left(problem: Problem, values: Array, found: Directions) -> float:
-    """Return how far the minimum still is, in standard deviations: by the next step of Gauss and Newton."""
+def _close_by(problem: Problem, values: Array, found: Directions) -> Array | None:
+    """Return the minimum if it is here, or a step away over which the derivatives here hold; else None.
+
+    Lengths are in standard deviations. That the derivatives hold is seen there: nothing is left of their slope. What
+    comes after then has these derivatives, too.
+    """
     residual, jacobian = problem.both(values)
-    return float(np.linalg.norm(found.basis.T @ (jacobian.T @ residual)) / np.sqrt(max(1.0, _reduced(residual))))
+    step = found.basis.T @ (jacobian.T @ residual)  # of Gauss and Newton, backwards
+    unit = np.sqrt(max(1.0, _reduced(residual)))
+    if np.linalg.norm(step) < _THERE * unit:
+        return values
+    if problem.by_formula or np.linalg.norm(step) > _NEAR * unit:
+        return None
+    there = values - found.basis @ step
+    left = problem.tried(there)
+    if not np.linalg.norm(found.basis.T @ (jacobian.T @ left)) < _THERE * unit:
+        return None
+    problem.last = (there.tobytes(), problem.until, left, jacobian)
+    return there
 
 
 def _reduced(residual: Array) -> float:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .sampling import Samples
 
 GOOD, BAD, UNDECIDED = "good", "bad", "cannot decide"
+_SAYS = 5.0  # standard deviations beyond a limit, for which a straight line from there still tells what the data say
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,10 @@ class Estimate:
     def cells(self) -> tuple[str, str, str]:
         """Its value with its error, its unit, and a remark."""
         if self.state == "limit" and self.alone is not None and self.alone_sigma is not None:
+            beyond = self.alone - self.value
+            if abs(beyond) > _SAYS * self.alone_sigma:  # so far off a straight line from the limit tells no value
+                asked = "more" if beyond > 0 else "less"
+                return f"{self.value:.6g}", self.unit, f"at its limit; the data ask for {asked}"
             return f"{self.value:.6g}", self.unit, f"at its limit; the data say {pm(self.alone, self.alone_sigma)}"
         if self.sigma is None:
             known = "held: the data do not fix it" if self.state == "held" else "only together, see below"

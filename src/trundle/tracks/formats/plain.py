@@ -37,7 +37,7 @@ class PlainTable(GridFormat):
             names = [str(i + 1) for i in range(grid.width)]
             if not options.columns:
                 rule = "must begin with a line of headings"
-                remedy = "Add one, such as t,x,y,z, or name the columns by number: columns t=1, x=2, y=3."
+                remedy = "Add one, such as t,x,y,z, or name the columns by number: --columns 't=1, x=2, y=3'."
                 raise InvalidValueError("file", rule, f"numbers in {grid.counted} {grid.lines[0]}", remedy)
         names = [name or f"column {i + 1}" for i, name in enumerate(names)]
         table = table_of(grid, names, units)

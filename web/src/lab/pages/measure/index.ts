@@ -1,5 +1,5 @@
 /** From a track that was measured to numbers with errors, and what they cannot tell. */
-import { shownDigits, typedDigits } from '../../../languages/translate'
+import { shownDigits, t, typedDigits } from '../../../languages/translate'
 import { put, say } from '../../../viewer/elements'
 import {
   ApiError,
@@ -104,7 +104,9 @@ export const measure: Page = {
 
     // 3. The fit
     const go = button('Fit', () => fitting.ask(null), 'primary', 'fit')
-    go.disabled = true
+    const halt = button('Stop', stopFitting, 'plain', 'fit-stop')
+    let choosing: object | null = null // a scenario that is on its way
+    let busy = false
     const results = h('div', { class: 'measure-results', role: 'status', 'aria-label': 'What was found' })
     const bench = button('Open the fitted scenario on the bench', () => void openBench(), 'plain', 'fit-bench')
     const file = button('Save fit.toml', () => fitted && save(new Blob([fitted.commented]), 'fit.toml'), 'plain')
@@ -116,7 +118,22 @@ export const measure: Page = {
       free.wrong(error instanceof ApiError && error.key === 'noise')
     }
 
+    /** What may be pressed now. */
+    function ready(): void {
+      say(go, busy ? 'Fitting …' : 'Fit')
+      go.disabled = busy || track === null || choosing !== null
+      halt.hidden = !busy
+    }
+
+    ready()
+
+    function stopFitting(): void {
+      fitting.stop()
+      go.focus()
+    }
+
     function forget(): void {
+      fitting.stop()
       fitted = null
       after.hidden = true
       fill(results)
@@ -133,7 +150,7 @@ export const measure: Page = {
         h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
         answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
       )
-      go.disabled = false
+      ready()
       plot.measured(answer)
       sketch()
     }
@@ -150,7 +167,8 @@ export const measure: Page = {
         reading.ask(null)
         took(answer)
       },
-      failed: (error) => tell(error),
+      failed: (error, { file, name }) =>
+        tell(error instanceof ApiError && error.status === 413 ? tooLarge(file, name) : error),
       state: (busy) => host.firstElementChild?.toggleAttribute('data-busy', busy),
     })
 
@@ -167,9 +185,9 @@ export const measure: Page = {
       given = next
       example = of
       track = null
-      go.disabled = true
       tell(null)
       forget()
+      ready()
       fill(said)
       showing.show(null)
       reading.ask(null)
@@ -187,14 +205,22 @@ export const measure: Page = {
     }
 
     async function choose(name: string): Promise<void> {
+      const mine = {}
+      choosing = mine
       tell(null)
       forget()
+      ready()
       try {
-        if (name === OF_EXAMPLE && example) scenario = example.scenario
-        else if (name === BENCH) scenario = app.store.scenario
-        else if (name !== OF_EXAMPLE) scenario = (await app.api.scenario(name, { signal: leaving.signal })).scenario
+        const options = { signal: leaving.signal }
+        let chosen = scenario
+        if (name === OF_EXAMPLE && example) chosen = example.scenario
+        else if (name === BENCH) chosen = app.store.scenario
+        else if (name !== OF_EXAMPLE) chosen = (await app.api.scenario(name, options)).scenario
+        const known = await app.api.mapNumbers(chosen, options)
+        if (choosing !== mine) return
+        scenario = chosen
+        numbers = [...known, TURN]
         moved.show(name, example)
-        numbers = [...(await app.api.mapNumbers(scenario, { signal: leaving.signal })), TURN]
         const asked = name === OF_EXAMPLE && example ? example : { free: [], noise: '' }
         free.show(
           numbers.filter(({ key }) => !key.startsWith('start.')),
@@ -202,8 +228,10 @@ export const measure: Page = {
           asked.noise,
         )
         staging.ask(scenario)
+        choosing = null
+        ready()
       } catch (error) {
-        if (!isAbort(error)) tell(error)
+        if (choosing === mine && !isAbort(error)) tell(error)
       }
     }
 
@@ -254,10 +282,10 @@ export const measure: Page = {
         staging.ask(answer.scenario)
       },
       failed: (error) => tell(error),
-      state(busy) {
-        say(go, busy ? 'Fitting …' : 'Fit')
-        go.disabled = busy || track === null
-        host.firstElementChild?.toggleAttribute('data-busy', busy)
+      state(now) {
+        busy = now
+        ready()
+        host.firstElementChild?.toggleAttribute('data-busy', now)
       },
     })
     undo.add(
@@ -298,7 +326,7 @@ export const measure: Page = {
             h('h2', { id: 'measure-2' }, 'What moved'),
             moved.element,
             free.element,
-            go,
+            h('div', { class: 'buttons' }, go, halt),
           ),
         ),
         h('div', { class: 'measure-seen' }, stage.element, showing.element, plot.element, results, after),
@@ -334,10 +362,17 @@ export const measure: Page = {
   },
 }
 
+function tooLarge(file: Blob, name: string): Error {
+  const size = (file.size / 2 ** 20).toFixed(0)
+  const words =
+    '{title} has {size} MiB, more than the lab reads. Leave out rows, or use trundle fit, which takes them all.'
+  return new Error(t(words, { title: name, size }))
+}
+
 /** Where the body was seen, on the support: along x where only that was measured. */
-function placesOf({ columns: { t = [], x, y, z } }: Track): [number, number][] | [number, number, number][] {
+function placesOf({ columns: { t: times = [], x, y, z } }: Track): [number, number][] | [number, number, number][] {
   if (!x && !y) return []
-  const rows = t.map((_, i): (number | null)[] => [x ? x[i]! : 0, y ? y[i]! : 0, ...(z ? [z[i]!] : [])])
+  const rows = times.map((_, i): (number | null)[] => [x ? x[i]! : 0, y ? y[i]! : 0, ...(z ? [z[i]!] : [])])
   return rows.filter((row) => row.every((part) => part !== null)) as [number, number][]
 }
 

@@ -11,6 +11,7 @@ describe('what is drawn', () => {
     const units = { t: 's', x: 'm', wy: 'rad/s', wz: 'rad/s' }
     const drawn = drawnOf({ t: [0, 1], x: [1, 2], wy: [3, 4], wz: [3, 4] }, units)
     expect(drawn.names).toEqual(['t, s', 'x, m; wy, wz, rad/s'])
+    expect(drawn.called).toEqual(['x', 'wy', 'wz'])
     expect(drawn.points[1]).toEqual([
       [0, 3],
       [1, 4],

@@ -22,20 +22,25 @@ export interface Drawn {
   /** Both axes alike. */
   square: boolean
   points: Line[]
+  /** What each line is, where they are several. */
+  called: string[]
 }
 
+const FITTED = '--series-2'
+const MEASURED = ['--series-1', '--series-3', '--series-4', '--series-5']
 const LASTS = 1600 // ms, of the way of a fit
 
 /** The path where x and y were measured, else each column over time. */
 export function drawnOf(columns: TrackColumns, units: Record<string, string>): Drawn {
   const { t = [], x, y, ...others } = columns
-  if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)] }
+  if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)], called: [] }
   const rest = Object.entries(x ? { x, ...others } : y ? { y, ...others } : others)
   const names = rest.map(([name]) => name)
   return {
     names: ['t, s', told(names, units)],
     square: false,
     points: rest.map(([, column]) => paired(t, column)),
+    called: names.length > 1 ? names : [],
   }
 }
 
@@ -99,7 +104,8 @@ export function createPlot(): Plot {
   })
   const said = h('output', { for: id, class: 'number', 'data-testid': 'fit-said' })
   const steps = h('div', { class: 'dial', hidden: true }, h('label', { for: id }, 'Step of the fit'), said, step)
-  const element = h('div', { class: 'measure-plot', 'data-empty': true }, canvas, steps)
+  const legend = h('p', { class: 'measure-legend' })
+  const element = h('div', { class: 'measure-plot', 'data-empty': true }, canvas, legend, steps)
   let track: Pick<Track, 'columns' | 'units'> | null = null
   let found: Way | null = null
   let frame = 0
@@ -132,7 +138,22 @@ export function createPlot(): Plot {
     context.scale(ratio, ratio)
     const drawn = drawnOf(track.columns, track.units)
     const line = found ? stepOf(found, Number(step.value), track.units) : null
+    tellApart(drawn, line !== null)
     draw(context, box.width, box.height, drawn, line, canvas)
+  }
+
+  function tellApart({ called }: Drawn, fit: boolean): void {
+    const key = (series: string, words: string, kind: string) => {
+      const sample = h('span', { class: `measure-key ${kind}`, 'aria-hidden': true })
+      sample.style.background = `var(${series})`
+      return h('span', {}, sample, words)
+    }
+    const names = called.length ? called.map((name) => t('{name}, measured', { name })) : ['measured']
+    fill(
+      legend,
+      names.map((words, i) => key(MEASURED[i % MEASURED.length]!, words, 'points')),
+      fit ? key(FITTED, 'the fit', 'line') : null,
+    )
   }
 
   const watcher = new ResizeObserver(() => paint())
@@ -186,49 +207,52 @@ function draw(
 ): void {
   const style = getComputedStyle(canvas)
   const read = (name: string) => style.getPropertyValue(name).trim()
-  const [wide, high] = [width - EDGE.left - EDGE.right, height - EDGE.top - EDGE.bottom]
+  const rem = Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / 16 || 1
+  const [left, top] = [EDGE.left * rem, EDGE.top * rem]
+  const [wide, high] = [width - left - EDGE.right * rem, height - top - EDGE.bottom * rem]
   const [across, up] = rangesOf(drawn.points, drawn.square, wide, high) as [[number, number], [number, number]]
   const at = (point: readonly [number, number]): [number, number] => [
-    EDGE.left + ((point[0] - across[0]) / (across[1] - across[0])) * wide,
-    EDGE.top + (1 - (point[1] - up[0]) / (up[1] - up[0])) * high,
+    left + ((point[0] - across[0]) / (across[1] - across[0])) * wide,
+    top + (1 - (point[1] - up[0]) / (up[1] - up[0])) * high,
   ]
   context.clearRect(0, 0, width, height)
-  context.font = `12px ${read('--font-number')}`
+  context.font = `${12 * rem}px ${read('--font-number')}`
   context.fillStyle = read('--ink-2')
   context.strokeStyle = read('--line')
   context.textBaseline = 'middle'
   for (const value of roundNumbers(across[0], across[1], 6)) {
     const [x] = at([value, up[0]])
-    rule(context, x, EDGE.top, x, EDGE.top + high)
+    rule(context, x, top, x, top + high)
     context.textAlign = 'center'
-    context.fillText(t(show(value)), x, EDGE.top + high + 12)
+    context.fillText(t(show(value)), x, top + high + 12 * rem)
   }
   for (const value of roundNumbers(up[0], up[1], 6)) {
     const [, y] = at([across[0], value])
-    rule(context, EDGE.left, y, EDGE.left + wide, y)
+    rule(context, left, y, left + wide, y)
     context.textAlign = 'right'
-    context.fillText(t(show(value)), EDGE.left - 6, y)
+    context.fillText(t(show(value)), left - 6 * rem, y)
   }
   context.textAlign = 'center'
-  context.fillText(t(drawn.names[0]), EDGE.left + wide / 2, height - 10)
+  context.fillText(t(drawn.names[0]), left + wide / 2, height - 10 * rem)
   context.save()
-  context.translate(10, EDGE.top + high / 2)
+  context.translate(10 * rem, top + high / 2)
   context.rotate(-Math.PI / 2)
   context.fillText(t(drawn.names[1]), 0, 0)
   context.restore()
   context.save()
   context.beginPath()
-  context.rect(EDGE.left, EDGE.top, wide, high)
+  context.rect(left, top, wide, high)
   context.clip()
-  context.fillStyle = read('--series-1')
-  for (const points of drawn.points)
+  drawn.points.forEach((points, i) => {
+    context.fillStyle = read(MEASURED[i % MEASURED.length]!)
     for (const point of points) {
       if (!point) continue
       const [x, y] = at(point)
-      context.fillRect(x - 1.5, y - 1.5, 3, 3)
+      context.fillRect(x - 1.5 * rem, y - 1.5 * rem, 3 * rem, 3 * rem)
     }
-  context.strokeStyle = read('--series-2')
-  context.lineWidth = 2
+  })
+  context.strokeStyle = read(FITTED)
+  context.lineWidth = 2 * rem
   for (const points of line?.points ?? []) {
     context.beginPath()
     points.forEach((point) => {
