@@ -13,7 +13,8 @@ from tests.conformance.conftest import Make, good_answer
 
 import trundle as tr
 from trundle.conformance import Entrant, Row, Score, cases, engines, score
-from trundle.conformance.measuring import classify, cut_off, order
+from trundle.conformance.measuring import classify, cut_off, errors_of, order
+from trundle.conformance.results import Cell
 
 CASES = {case.name: case for case in cases()}
 
@@ -78,6 +79,39 @@ def test_a_limit_is_silent_where_it_recurs() -> None:
     assert Score((first, replace(second, limit=97.3))).profiles[0].name == "plateaus"
 
 
+def test_half_a_turn_off_is_astray_and_no_plateau() -> None:
+    def cell(*positions: float, angle: float = 3.13, reach: float = math.nan, more: tuple[Row, ...] = ()) -> Cell:
+        made = (
+            replace(row, position=e, turning=2e-3, angle=angle, reach=reach)
+            for row, e in zip(rows(*positions), positions, strict=True)
+        )
+        return Score((*made, *more)).profiles[0]
+
+    assert cell(1e-3, 1e-4).name == "astray"  # the position falls, and the turning may
+    assert cell(1e-3, 1e-3, reach=0.9).name == "astray"  # a stone that stays where it is
+    assert cell(1e-3, 1e-3, reach=0.01).name == "plateaus"  # the position could grow, and stays
+    assert cell(1e-3, 1e-3, angle=2.0, reach=0.9).name == "plateaus"
+    assert cell(1e-2, 1e-2, reach=0.9).name == "plateaus"  # classes go by the position there
+    found = rows(2e-3, 1.5e-3, setting="stiff", of="as shipped", angle=1.0)
+    assert cell(1e-3, 1e-4, more=found).cause == "stiff"
+    assert cell(1e-3, 1e-4, more=tuple(replace(row, angle=3.13, position=0.0) for row in found)).cause == ""
+
+
+def test_the_reach_of_an_error_is_that_of_the_path() -> None:
+    case = CASES["driven-turntable"]
+    exact = case.exact()  # a circle: a body that stays at its middle is off by its radius
+    middle = np.broadcast_to(exact.position.mean(0), exact.position.shape)
+    assert errors_of(case, exact, replace(exact, position=middle)).reach == pytest.approx(1.0, rel=1e-12)
+
+
+def test_slipping_is_measured_where_the_centre_rests() -> None:
+    case = CASES["eulers-disc"]
+    exact = case.exact()
+    slid = replace(exact, velocity=exact.velocity + np.array([0.1, 0.0, 0.0]))
+    speed = math.sqrt(2 * case.kinetic_energy(exact).max() / 0.4)
+    assert errors_of(case, exact, slid).slip == pytest.approx(0.1 / speed, rel=1e-9)
+
+
 def test_thresholds() -> None:
     falling, flat = rows(1e-2, 1e-3, 1e-4), rows(1e-2, 1e-2, 1e-2, engine="F")
     broken = tuple(
@@ -96,7 +130,7 @@ def test_rows_are_read_back_and_compared(tmp_path) -> None:
     old = Score(rows(1e-2, 1e-3) + rows(1e-2, 1e-2, case="dome"))
     old.save(tmp_path / "score.nc")
     read = Score.load(tmp_path / "score.nc")
-    plain = dict.fromkeys(("limit", "derivative", "friction", "own", "mesh"), 0.0)  # no number is equal to nan
+    plain = dict.fromkeys(("limit", "derivative", "friction", "own", "mesh", "reach"), 0.0)  # no number is equal to nan
     assert [replace(row, **plain) for row in read.rows] == [replace(row, **plain) for row in old.rows]
     new = Score(rows(1e-2, 1e-2))
     assert new.changes_from(read) == ["E, as shipped, incline: converges, now plateaus"]

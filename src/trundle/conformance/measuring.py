@@ -11,7 +11,7 @@ import numpy as np
 from .case import Array, Case, Motion, extent
 
 EXACT, CONVERGES, SLOWLY, PLATEAUS, DIVERGES = "exact", "converges", "converges slowly", "plateaus", "diverges"
-SILENT_LIMIT, FLOAT_FLOOR, ONE_STEP = "silent limit", "float32 floor", "one step"
+ASTRAY, SILENT_LIMIT, FLOAT_FLOOR, ONE_STEP = "astray", "silent limit", "float32 floor", "one step"
 CANNOT, NOT_RUN = "cannot", "no result"
 CLASSES = {  # each with what it means
     EXACT: "at rounding, whatever the step",
@@ -19,6 +19,7 @@ CLASSES = {  # each with what it means
     SLOWLY: "it falls, more slowly",
     PLATEAUS: "a smaller step does not help",
     DIVERGES: "a smaller step makes it worse, or no numbers come out",
+    ASTRAY: "half a turn off at the finest steps, where errors cannot grow: smaller steps may help, and do not show",
     SILENT_LIMIT: "a speed is cut off at a fixed value, and nothing says so",
     FLOAT_FLOOR: "what is left is the rounding of single precision: the same run in double falls on",
     ONE_STEP: "numbers at one step only, which tell nothing of how they fall",
@@ -44,8 +45,12 @@ class Errors:
         Of any body's orientation, rad: at most π.
     turning : float
         The same over the angle through which the body has turned.
+    reach : float
+        Of the position of that body which is furthest off, over the distance to which its own path takes it from the
+        middle of the path: an error of about 1 cannot grow while both stay where they are.
     slip : float
-        Of the velocity of slipping over the highest speed; not a number where the engine does not say enough.
+        Of the velocity of slipping over the speed that all kinetic energy would be; not a number where the engine
+        does not say enough.
     energy : float
         Over the highest kinetic energy; of the moving energy on a driven support.
     friction : float
@@ -60,6 +65,7 @@ class Errors:
     position: float
     angle: float
     turning: float
+    reach: float
     slip: float
     energy: float
     friction: float
@@ -91,13 +97,15 @@ def errors_of(case: Case, exact: Motion, motion: Motion) -> Errors:
 
 def _apart(case: Case, exact: Motion, motion: Motion) -> Errors:
     apart = np.linalg.norm(motion.position - exact.position, axis=-1).max(0)
+    around = np.linalg.norm(exact.position - exact.position.mean(0), axis=-1).max(0)
     path = np.linalg.norm(np.diff(exact.position, axis=0), axis=-1).sum(0)
     between = _angles(motion.orientation, exact.orientation).max(0)
-    size = float(np.linalg.norm(exact.velocity, axis=-1).max())
+    kinetic = case.kinetic_energy(exact).max()
+    speed = math.sqrt(2 * kinetic / sum(body["mass"] for body in case.situation()["bodies"]))
     spin = np.linalg.norm(exact.angular_velocity, axis=-1)
     turned = (0.5 * (spin[1:] + spin[:-1]) * np.diff(exact.time)[:, None]).sum(0)
     slip = np.abs(np.linalg.norm(case.slip(motion) - case.slip(exact), axis=-1)).max()
-    energy = np.abs(case.energy(motion) - case.energy(exact)).max() / case.kinetic_energy(exact).max()
+    energy = np.abs(case.energy(motion) - case.energy(exact)).max() / kinetic
     friction = case.friction_force(exact)
     # A body that stays, or does not turn, is measured by how far the others go, and by its own size.
     path = np.maximum(path, max(1e-3 * path.max(), extent(case)))
@@ -105,7 +113,8 @@ def _apart(case: Case, exact: Motion, motion: Motion) -> Errors:
         float((apart / path).max()),
         float(between.max()),
         float((between / np.maximum(turned, 1e-3 * turned.max())).max()),
-        float(slip) / size if size > 0 else float("nan"),
+        float((apart / np.maximum(around, extent(case))).max()),
+        float(slip) / speed,
         float(energy),
         float(np.linalg.norm(case.friction_force(motion) - friction) / np.linalg.norm(friction)),
     )

@@ -14,6 +14,7 @@ from .animation import beside, program
 from .answers import NOT_INSTALLED
 from .case import Case
 from .measuring import (
+    ASTRAY,
     CANNOT,
     CLASSES,
     CONVERGES,
@@ -38,6 +39,7 @@ _LOOKS = {
     SLOWLY: ("↘", "#FBE9C0"),
     PLATEAUS: ("→", "#F6D5B8"),
     DIVERGES: ("↑", "#EFB08A"),
+    ASTRAY: ("?", "#E3E0F0"),
     SILENT_LIMIT: ("⊤", "#E9CBDD"),
     FLOAT_FLOOR: ("▁", "#DDDDDD"),
     ONE_STEP: ("·", "#FFFFFF"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,12 +15,26 @@ from ..display import Displayed, Headline, Markup, table
 from ..errors import RunFileError
 from ..files import read_netcdf
 from .answers import CANNOT as CANNOT_OUTCOME
-from .measuring import CANNOT, CONVERGES, DIVERGES, EXACT, FLOAT_FLOOR, NOT_RUN, PLATEAUS, SILENT_LIMIT, classify, order
+from .measuring import (
+    ASTRAY,
+    CANNOT,
+    CONVERGES,
+    DIVERGES,
+    EXACT,
+    FLOAT_FLOOR,
+    NOT_RUN,
+    PLATEAUS,
+    SILENT_LIMIT,
+    classify,
+    order,
+)
 
 if TYPE_CHECKING:
     import xarray
 
 _Key = tuple[str, str, str, str]
+_HALF_A_TURN = 3.0  # rad: between samples an error of π is not met exactly
+_CONFINED = 0.5, 2.0  # `Errors.reach` of what is as far off as it can be while it stays where it is
 _LESS = 1 / 3  # of the error at the finest step: an ablation that leaves so little names the cause
 _FORMAT = "trundle score 1"
 _UNITS = {"step": "s", "angle": "rad", "seconds": "1", "limit": "rad/s"}
@@ -28,7 +42,8 @@ _SAID = {
     "position": "error of position over the path, the largest",
     "angle": "error of orientation, the largest",
     "turning": "error of orientation over the angle turned through, the largest",
-    "slip": "error of the velocity of slipping over the highest speed, the largest",
+    "slip": "error of the velocity of slipping over the speed that all kinetic energy would be, the largest",
+    "reach": "error of position over the distance to which the path itself leads, the largest",
     "energy": "error of the energy over the highest kinetic energy, the largest",
     "seconds": "processor time of the stepping for a second of the motion",
     "derivative": "relative error of the derivatives of the final state, the largest by any input",
@@ -61,7 +76,7 @@ class Row:
         How derivatives of the final state were taken; empty for the motion itself.
     derivative : float
         Their relative error, the largest by any input.
-    friction, own, mesh : float
+    friction, own, mesh, reach : float
         See `Errors`.
     path : str
         The motion as an animation shows it; empty where there is none.
@@ -88,6 +103,7 @@ class Row:
     own: float = math.nan
     mesh: float = math.nan
     path: str = ""
+    reach: float = math.nan
 
     @property
     def worst(self) -> float:
@@ -95,6 +111,11 @@ class Row:
         if self.way:
             return self.derivative
         return max(self.position, self.turning) if math.isnan(self.own) else self.own
+
+    @property
+    def lost(self) -> bool:
+        """Whether the error that classes go by is that of an orientation, and as large as it can become."""
+        return not self.way and math.isnan(self.own) and self.angle > _HALF_A_TURN and self.turning > self.position
 
     @property
     def cell(self) -> tuple[str, str, str, str]:
@@ -128,6 +149,16 @@ class Cell(NamedTuple):
     def finest(self) -> Row:
         """The run at the finest step that gave a number, or else the last."""
         return next((row for row in reversed(self.rows) if math.isfinite(row.worst)), self.rows[-1])
+
+
+def _astray(rows: Sequence[Row]) -> bool:
+    """Whether nothing is known of how errors fall: half a turn off at the two finest steps, and no more in position."""
+    known = [row for row in rows if math.isfinite(row.worst)][-2:]
+    if len(known) < 2 or not all(row.lost for row in known):
+        return False
+    coarse, fine = known
+    least, most = _CONFINED
+    return fine.position < coarse.position / 2 or all(least < row.reach < most for row in known)
 
 
 def _recurs(limits: list[float]) -> bool:
@@ -191,10 +222,12 @@ class Score(Displayed):
         name = classify(errors)
         if name not in (CONVERGES, EXACT) and _recurs([row.limit for row in rows if math.isfinite(row.limit)]):
             name = SILENT_LIMIT
+        elif name in (PLATEAUS, DIVERGES) and _astray(rows):
+            name = ASTRAY
         if all(row.outcome == CANNOT_OUTCOME for row in rows):
             name = CANNOT
         cause = ""
-        if name in (PLATEAUS, DIVERGES, SILENT_LIMIT):
+        if name in (PLATEAUS, DIVERGES, SILENT_LIMIT, ASTRAY):
             cause = self._cause(rows, groups)
         if cause.startswith("double precision"):
             name = FLOAT_FLOOR
@@ -211,8 +244,9 @@ class Score(Displayed):
             for mine, other in zip(reversed(rows), reversed(others), strict=False):
                 if math.isfinite(other.worst) and mine.step == other.step:
                     share = other.worst / mine.worst if math.isfinite(mine.worst) and mine.worst > 0 else 0.0
-                    if share < left:
-                        best, left = setting, share
+                    found = mine.lost and not other.lost and share < 1  # of one that is lost, the error is larger
+                    if share < left or (found and not best):
+                        best, left = setting, min(share, left)
                     break
         return best
 

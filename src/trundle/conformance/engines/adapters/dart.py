@@ -17,18 +17,14 @@ def run(task: Task) -> Task:
     refuse(
         task,
         {
-            "disc": "its own collision detector has no cylinder, and others take a coin for a polyhedron",
             "driven": "this adapter found no joint of prescribed velocity that contacts feel",
         },
     )
     world = dart.simulation.World()
     world.setGravity(np.array(task["gravity"]))
     world.setTimeStep(task["dt"])
-    solver = world.getConstraintSolver()
-    detectors = {"dart": "DARTCollisionDetector", "bullet": "BulletCollisionDetector", "fcl": "FCLCollisionDetector"}
-    ellipsoid = any(body["shape"]["kind"] == "ellipsoid" for body in task["bodies"])
-    chosen = task["setting"].get("detector", "bullet" if ellipsoid or "mesh" in task["support"] else "dart")
-    solver.setCollisionDetector(getattr(dart.collision, detectors[chosen])())
+    if "friction" in task["setting"]:
+        world.getConstraintSolver().setBoxedLcpSolver(_friction_solver(dart.constraint, **task["setting"]["friction"]))
     table = _support(dart, np, world, task)
     bodies = [_body(dart, np, world, task, body, i) for i, body in enumerate(task["bodies"])]
     forces = [(node, np.array(body["force"])) for node, body in zip(bodies, task["bodies"], strict=True)]
@@ -60,6 +56,15 @@ def run(task: Task) -> Task:
     hinged = task["support"]["motion"]["kind"] == "hinge"
     turn = (lambda: (table.getPosition(0), table.getVelocity(0))) if hinged else None
     return march(task, f"DART {dart.__version__}", step, read, turn)
+
+
+def _friction_solver(constraint: Any, kind: str, **options: Any) -> Any:
+    """Return the solver of contacts of that kind, its options changed."""
+    made = getattr(constraint, kind)
+    chosen = made.Options()
+    for name, value in options.items():
+        setattr(chosen, name, made.Law.__members__[value] if name == "law" else value)
+    return made(chosen)
 
 
 def _support(dart: Any, np: Any, world: Any, task: Task) -> Any:
@@ -95,6 +100,7 @@ def _body(dart: Any, np: Any, world: Any, task: Task, body: Task, i: int) -> Any
     kinds = {
         "sphere": lambda: dart.dynamics.SphereShape(shape["radius"]),
         "box": lambda: dart.dynamics.BoxShape(2 * np.array(shape["half_widths"])),
+        "disc": lambda: dart.dynamics.CylinderShape(shape["radius"], 2e-4),
         "ellipsoid": lambda: dart.dynamics.EllipsoidShape(2 * np.array(shape["semi_axes"])),
     }
     if shape["kind"] not in kinds:

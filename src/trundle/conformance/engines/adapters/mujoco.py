@@ -28,6 +28,8 @@ def model(task: Task, *, moving: bool = True) -> str:
     if "solref_steps" in task["setting"]:  # a time constant tied to the step
         chosen["solref"] = [task["setting"]["solref_steps"] * task["dt"], 1.0]
     soft = f'solref="{_row(chosen["solref"])}" solimp="{_row(chosen["solimp"])}" condim="3"'
+    along = task["setting"].get("solreffriction")  # its own for the directions of friction; of named pairs only
+    slow = f' solreffriction="{_row(along)}"' if along else ""
     support, motion = task["support"], task["support"]["motion"]
     assets = ""
     if "mesh" in support:  # one that is not convex is taken for its convex hull: it is told as convex pieces
@@ -46,9 +48,9 @@ def model(task: Task, *, moving: bool = True) -> str:
     # What meets pieces cannot name each as a pair: it says itself how it meets them.
     meets = f'contype="1" priority="1" friction="{task["friction"]!r} 0 0" {soft}' if assets else _ALONE
     bodies = "".join(_body(i, body, meets) for i, body in enumerate(task["bodies"]))
-    ground_pair = f'<pair geom1="g0" geom2="ground" friction="{_friction(task["friction"])}" {soft}/>'
+    ground_pair = f'<pair geom1="g0" geom2="ground" friction="{_friction(task["friction"])}" {soft}{slow}/>'
     pairs = ("" if assets else ground_pair) + "".join(
-        f'<pair geom1="g{i}" geom2="g0" friction="{_friction(task["friction_between"])}" {soft}/>'
+        f'<pair geom1="g{i}" geom2="g0" friction="{_friction(task["friction_between"])}" {soft}{slow}/>'
         for i in range(1, len(task["bodies"]))
     )
     gravity = task["gravity"] if moving else [0.0, 0.0, task["gravity"][2]]

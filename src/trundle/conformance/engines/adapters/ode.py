@@ -7,6 +7,7 @@ from typing import Any
 from .serving import CannotError, Task, march, refuse, serve
 
 _MOST_CONTACTS = 16  # of a pair
+_STILL = 1e-5  # m/s, below which the direction of slipping is rounding
 
 
 def run(task: Task) -> Task:
@@ -29,19 +30,23 @@ def run(task: Task) -> Task:
     made = [_body(core, ode, world, body) for body in task["bodies"]]
     pairs = [(made[0], (ground, table), task["friction"])]
     pairs += [(each, made[0], task["friction_between"]) for each in made[1:]]
-    surfaces = [_surface(ode, friction, task["restitution"]) for *_, friction in pairs]
+    along = setting.get("pyramid") == "along the slip"
+    surfaces = [_surface(ode, friction, task["restitution"], along) for *_, friction in pairs]
+    forces = [core.LVector3f(*told["force"]) for told in task["bodies"]]
     pushed = [(body, told["force"]) for (_, body), told in zip(made, task["bodies"], strict=True) if any(told["force"])]
     group, advance = ode.OdeJointGroup(), world.step if setting.get("solver") == "step" else world.quickStep
 
     def step(count: int) -> None:
         """Take steps: contacts are made anew for each, and a force lasts for one."""
         for _ in range(count):
-            for ((geom, body), (other, under), _mu), surface in zip(pairs, surfaces, strict=True):
+            for ((geom, body), (other, under), _mu), surface, force in zip(pairs, surfaces, forces, strict=True):
                 met = ode.OdeUtil.collide(geom, other, _MOST_CONTACTS)
                 for i in range(met.getNumContacts()):
                     contact = ode.OdeContact()
                     contact.setGeom(met.getContactGeom(i))
                     contact.setSurface(surface)
+                    if along:
+                        _turn(contact, body, under, force)
                     joint = ode.OdeContactJoint(world, group, contact)
                     # Which of the two the normal points to is that of the entry.
                     joint.attach(body, under) if under is not None else joint.attachBody(body, 0)
@@ -60,10 +65,21 @@ def run(task: Task) -> Task:
     return march(task, f"ODE (Panda3D {core.PandaSystem.getVersionString()})", step, read, turn)
 
 
-def _surface(ode: Any, friction: float, restitution: float) -> Any:
+def _turn(contact: Any, body: Any, under: Any, force: Any) -> None:
+    """Turn the pyramid of friction so that the body slips along one of its sides, or is pushed along it."""
+    met = contact.getGeom()
+    place, normal = met.getPos(), met.getNormal()
+    slip = body.getPointVel(place) - (under.getPointVel(place) if under is not None else normal.zero())
+    ways = (way - normal * way.dot(normal) for way in (slip, force, normal.unitX(), normal.unitY()))
+    along = next(way for way in ways if way.length() > _STILL)
+    along.normalize()
+    contact.setFdir1(along)
+
+
+def _surface(ode: Any, friction: float, restitution: float, along: bool) -> Any:
     """Return how two surfaces meet: with a pyramid of friction, which is what it has."""
     surface = ode.OdeSurfaceParameters()
-    mode = ode.OdeSurfaceParameters.MFContactApprox1
+    mode = ode.OdeSurfaceParameters.MFContactApprox1 | (along and ode.OdeSurfaceParameters.MFContactFDir1)
     surface.setMu(friction)
     if restitution:
         mode |= ode.OdeSurfaceParameters.MFContactBounce

@@ -114,10 +114,13 @@ def _body(pb: Any, body: Task) -> tuple[int, list[float]]:
     """Make a body, its frame along its principal axes; return it and the turn to them."""
     (xx, yy, zz), turn = principal_axes(body["inertia"])
     shape = body["shape"]
+    if shape["kind"] == "disc":  # of a cylinder in a URDF file Bullet makes a prism
+        made = pb.createMultiBody(body["mass"], pb.createCollisionShape(pb.GEOM_CYLINDER, shape["radius"], height=2e-4))
+        pb.changeDynamics(made, -1, localInertiaDiagonal=[xx, yy, zz], collisionMargin=0)
+        return made, turn
     kinds = {
         "sphere": lambda: f'<sphere radius="{shape["radius"]!r}"/>',
         "box": lambda: '<box size="{} {} {}"/>'.format(*(2 * half for half in shape["half_widths"])),
-        "disc": lambda: f'<cylinder radius="{shape["radius"]!r}" length="2e-4"/>',
     }
     if shape["kind"] not in kinds:
         raise CannotError(f"this adapter has no {shape['kind']}")
@@ -128,8 +131,6 @@ def _body(pb: Any, body: Task) -> tuple[int, list[float]]:
         f'<link name="b"><inertial><mass value="{body["mass"]!r}"/>{moments}</inertial><collision>'
         f'<origin xyz="{place}"/><geometry>{kinds[shape["kind"]]()}</geometry></collision></link>',
     )
-    if shape["kind"] == "disc":
-        pb.changeDynamics(made, -1, collisionMargin=0)
     return made, turn
 
 
