@@ -163,3 +163,22 @@ def test_it_knows_its_variables() -> None:
     assert Expression.parse("x**2 + sin(t)*2", ("x", "y", "t"), "formula").variables == {"x", "t"}
     assert formula("2 + 3").variables == frozenset()
     assert formula("2 + 3").course(1.0) == (5.0, 0.0, 0.0)
+
+
+def test_as_many_terms_as_fit_stand_beside_each_other() -> None:
+    """Python's tree has each sum inside of the next: 250 terms are no deeper than two."""
+    terms = formula("+".join(["t"] * 250))
+    assert terms.course(2.0) == (500.0, 250.0, 0.0)
+    assert formula("-".join(["t"] * 250)).at(t=1.0) == -248.0
+    assert first_singular(terms, 0.0, 10.0) is None
+    push = tr.Force(("0.0004*(" + "+".join(["t"] * 240) + ")", 0.0, 0.0))
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane()), (push,))
+    run = tr.simulate(system, system.place((0.0, 0.0), (0.0, 0.0)), 2.0, 0.2).samples
+    # 7/5 m a = F, and F = 0.096 t: x = 0.096 t³/6/(7/5 m)
+    assert run.position[-1, 0] == pytest.approx(0.096 * 8 / 6 / (1.4 * 0.1), rel=1e-13)
+
+
+def test_a_formula_that_is_nested_too_deep_is_refused() -> None:
+    assert formula("(1+" * 60 + "t" + ")" * 60).at(t=1.0) == 61.0
+    with pytest.raises(InvalidValueError, match="nested too deep"):
+        formula("(1+" * 61 + "t" + ")" * 61)

@@ -221,7 +221,8 @@ class _Reader:
             case ast.BinOp(op=ast.Pow(), left=base, right=exponent):
                 return ("**", self.read(base, depth + 1), self._power(exponent))
             case ast.BinOp(op=operator, left=left, right=right) if type(operator) in _OPERATORS:
-                return (_OPERATORS[type(operator)], self.read(left, depth + 1), self.read(right, depth + 1))
+                # Terms stand beside each other, though the tree has each sum inside of the next.
+                return (_OPERATORS[type(operator)], self.read(left, depth), self.read(right, depth + 1))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
                 wanted = 2 if name in _TWO_ARGUMENTS else 1
                 if len(arguments) != wanted:
