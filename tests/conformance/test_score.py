@@ -104,6 +104,17 @@ def test_the_reach_of_an_error_is_that_of_the_path() -> None:
     assert errors_of(case, exact, replace(exact, position=middle)).reach == pytest.approx(1.0, rel=1e-12)
 
 
+def test_the_spin_that_is_left_is_told_where_a_body_turns_round() -> None:
+    case = CASES["rattleback"]
+    exact = case.exact()
+    assert errors_of(case, exact, exact).spin == 1.0
+    half = replace(exact, angular_velocity=exact.angular_velocity * [1.0, 1.0, -0.5])
+    assert errors_of(case, exact, half).spin == -0.5
+    for name in ("tippe-top", "driven-turntable", "incline"):
+        still = CASES[name].exact()
+        assert math.isnan(errors_of(CASES[name], still, still).spin)
+
+
 def test_slipping_is_measured_where_the_centre_rests() -> None:
     case = CASES["eulers-disc"]
     exact = case.exact()
@@ -130,7 +141,9 @@ def test_rows_are_read_back_and_compared(tmp_path) -> None:
     old = Score(rows(1e-2, 1e-3) + rows(1e-2, 1e-2, case="dome"))
     old.save(tmp_path / "score.nc")
     read = Score.load(tmp_path / "score.nc")
-    plain = dict.fromkeys(("limit", "derivative", "friction", "own", "mesh", "reach"), 0.0)  # no number is equal to nan
+    plain = dict.fromkeys(
+        ("limit", "derivative", "friction", "own", "mesh", "reach", "spin"), 0.0
+    )  # no number is equal to nan
     assert [replace(row, **plain) for row in read.rows] == [replace(row, **plain) for row in old.rows]
     new = Score(rows(1e-2, 1e-2))
     assert new.changes_from(read) == ["E, as shipped, incline: converges, now plateaus"]

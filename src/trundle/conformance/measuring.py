@@ -60,6 +60,9 @@ class Errors:
         the support is none.
     mesh : float
         What that body is off by itself: the share that is no fault of the engine's.
+    spin : float
+        About the vertical at the end, over the exact one, where a body spins up the other way: negative where the
+        engine does not turn it round. Not a number where none does.
     """
 
     position: float
@@ -71,6 +74,7 @@ class Errors:
     friction: float
     own: float = math.nan
     mesh: float = math.nan
+    spin: float = math.nan
 
     @property
     def worst(self) -> float:
@@ -113,11 +117,18 @@ def _apart(case: Case, exact: Motion, motion: Motion) -> Errors:
         float((apart / path).max()),
         float(between.max()),
         float((between / np.maximum(turned, 1e-3 * turned.max())).max()),
-        float((apart / np.maximum(around, extent(case))).max()),
+        float((apart / np.maximum(around, 1e-3 * extent(case))).max()),
         float(slip) / speed,
         float(energy),
         float(np.linalg.norm(case.friction_force(motion) - friction) / np.linalg.norm(friction)),
+        spin=_turned_round(exact.angular_velocity[:, 0, 2], motion.angular_velocity[:, 0, 2]),
     )
+
+
+def _turned_round(exact: Array, found: Array) -> float:
+    """Return the last spin over the exact one, where that has changed its sign and is large again."""
+    round_it_goes = exact[-1] * exact[0] < 0 and abs(exact[-1]) > 0.5 * np.abs(exact).max()
+    return float(found[-1] / exact[-1]) if round_it_goes else math.nan
 
 
 def _angles(p: Array, q: Array) -> Array:

@@ -234,6 +234,8 @@ def _cell(cell: Cell | None) -> str:
     lines = [f"{_number(last.worst)} at {1e3 * last.step:g} ms"] if math.isfinite(last.worst) else []
     lines += [f"the mesh's own: {_number(last.mesh)}"] if math.isfinite(last.mesh) else []
     lines += [f"friction {_number(last.friction)}"] if math.isfinite(last.friction) else []
+    if math.isfinite(last.spin):
+        lines += [f"turns round with {last.spin:.0%} of the spin" if last.spin > 0 else "does not turn round"]
     lines += [f"falls with: {cell.cause}"] if cell.cause else []
     small = "".join(f"<small>{escaped(line)}</small>" for line in lines)
     told = f' title="{escaped(why)}"' if why else ""

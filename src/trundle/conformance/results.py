@@ -44,6 +44,7 @@ _SAID = {
     "turning": "error of orientation over the angle turned through, the largest",
     "slip": "error of the velocity of slipping over the speed that all kinetic energy would be, the largest",
     "reach": "error of position over the distance to which the path itself leads, the largest",
+    "spin": "spin about the vertical at the end over the exact one, where the exact one has turned round",
     "energy": "error of the energy over the highest kinetic energy, the largest",
     "seconds": "processor time of the stepping for a second of the motion",
     "derivative": "relative error of the derivatives of the final state, the largest by any input",
@@ -76,7 +77,7 @@ class Row:
         How derivatives of the final state were taken; empty for the motion itself.
     derivative : float
         Their relative error, the largest by any input.
-    friction, own, mesh, reach : float
+    friction, own, mesh, reach, spin : float
         See `Errors`.
     path : str
         The motion as an animation shows it; empty where there is none.
@@ -104,6 +105,7 @@ class Row:
     mesh: float = math.nan
     path: str = ""
     reach: float = math.nan
+    spin: float = math.nan
 
     @property
     def worst(self) -> float:
