@@ -1,10 +1,10 @@
 """A scene, and the bytes that carry it to a viewer: a header in JSON, then the columns, one behind the other.
 
 Little-endian: ``TRUNDLE1``, the length of the header and 0 as uint32, the header, the columns. Offsets count from the
-end of the header. A column's numbers count as unsigned integers of their own width, whatever they are. Each row gives way
-to its second difference from the two before it, those before the first being 0; where it overflows it wraps, so that
-nothing is lost. Of these differences stand first the first bytes of all rows, then their second bytes, and so on. A
-motion is smooth, so what stands side by side is much alike, and is sent compressed to half of what rows would be.
+end of the header. A column's numbers count as unsigned integers of their own width, whatever they are. Each row gives
+way to its second difference from the two before it, those before the first being 0; where it overflows it wraps, so
+that nothing is lost. Of these differences stand first the first bytes of all rows, then their second bytes, and so on.
+A motion is smooth, so what stands side by side is much alike, and is sent compressed to half of what rows would be.
 """
 
 from __future__ import annotations
