@@ -124,3 +124,12 @@ def test_the_header_and_the_tabs_fit_at_every_width_in_long_words(visitor: Visit
         for row in (".head", "[role=tablist]"):
             wide = page.locator(row).first.evaluate("row => row.scrollWidth - row.clientWidth")
             assert wide <= 1, (row, width)
+
+
+def test_an_arrow_bears_its_symbol_in_any_language_and_a_point_of_the_compass_its_letter(visitor: Visitor) -> None:
+    """E is the electric field, and east."""
+    page = visitor.open("?lang=de#/fields", drawn=False, cards=False)
+    arrows = page.locator(".tr-label[data-kind=arrow]:not([hidden])")
+    expect(arrows).to_have_text(["E", "B"], timeout=SLOW)
+    page = visitor.open("?lang=de#/holonomy", drawn=False, cards=False)
+    expect(page.locator(".tr-label[data-kind=axis]:not([hidden])")).to_have_text(["O", "N"], timeout=SLOW)
