@@ -111,3 +111,25 @@ def test_a_decimal_comma_is_shown_and_understood(visitor: Visitor) -> None:
     tilt.press("Enter")
     expect(tilt).to_have_value("0,5")
     expect(page.locator('[data-path="support.tilt"] .field-message')).to_be_hidden()
+
+
+@pytest.mark.parametrize("projector", [False, True])
+def test_the_header_and_the_tabs_fit_at_every_width_in_long_words(visitor: Visitor, projector: bool) -> None:
+    page = visitor.open("?lang=de#/bench", drawn=False, cards=False)
+    expect(page.get_by_role("tab", name="Zahlen")).to_be_visible()
+    if projector:
+        page.evaluate("document.documentElement.dataset.projector = ''")
+    for width in (390, 683, 844, 900, 930, 960, 1024, 1088, 1100, 1280, 1366, 1920):
+        page.set_viewport_size({"width": width, "height": 640})
+        for row in (".head", "[role=tablist]"):
+            wide = page.locator(row).first.evaluate("row => row.scrollWidth - row.clientWidth")
+            assert wide <= 1, (row, width)
+
+
+def test_an_arrow_bears_its_symbol_in_any_language_and_a_point_of_the_compass_its_letter(visitor: Visitor) -> None:
+    """E is the electric field, and east."""
+    page = visitor.open("?lang=de#/fields", drawn=False, cards=False)
+    arrows = page.locator(".tr-label[data-kind=arrow]:not([hidden])")
+    expect(arrows).to_have_text(["E", "B"], timeout=SLOW)
+    page = visitor.open("?lang=de#/holonomy", drawn=False, cards=False)
+    expect(page.locator(".tr-label[data-kind=axis]:not([hidden])")).to_have_text(["O", "N"], timeout=SLOW)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
+from collections.abc import Iterator, Mapping
+from itertools import product
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -124,3 +128,99 @@ def test_what_is_said_of_a_wrong_value(path: str, value: Any) -> None:
     assert refusal is not None
     assert refusal.parts, refusal.message
     assert untold(part[which] for part in refusal.parts for which in ("rule", "remedy")) == []
+
+
+# What a visitor of the lab can come upon: these rooms compute for it. Of `analysis` the pages Measure, Crossed fields
+# and Holonomy use a part.
+ROOMS = [
+    "mechanics",
+    "scenario",
+    "solve",
+    "units.py",
+    "lab",
+    "tracks",
+    "analysis/analogy",
+    "analysis/fit",
+    "analysis/geometry",
+]
+PYTHON_ONLY = {
+    "analysis/fit/plan.py",
+    "analysis/fit/sampling.py",
+    "analysis/geometry/along.py",
+    "analysis/geometry/pieces.py",
+    "analysis/geometry/rolled.py",
+    "lab/security.py",  # options of the command
+    "lab/serving.py",
+    "mechanics/duals.py",
+    "mechanics/expressions.py",
+    "solve/compiled_steps.py",
+    "solve/exact/many_samples.py",
+    "tracks/arrays.py",
+    "tracks/film/check_film.py",
+}
+RAISED = re.compile(r"(InvalidValue|Scenario|OutOfDomain|Solver|TurnsTooFast|Trundle)Error$|^refused$")
+
+
+Named = Mapping[str, list[str]]
+
+
+def _template(node: ast.AST, named: Named) -> Iterator[str]:
+    """Yield the words of a text, with a number for each value in it, in every way that it may read."""
+    if isinstance(node, ast.IfExp):
+        yield from [*_template(node.body, named), *_template(node.orelse, named)]
+    elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    elif isinstance(node, ast.Name):
+        yield from named.get(node.id, [])
+    elif isinstance(node, ast.FormattedValue):
+        yield from list(_template(node.value, named)) or ["3"]
+    elif isinstance(node, ast.JoinedStr):
+        yield from map("".join, product(*(list(_template(part, named)) for part in node.values)))
+
+
+def _named(function: ast.AST) -> Named:
+    """Return the texts that get a name first, such as `rule` and `remedy`."""
+    found: dict[str, list[str]] = {}
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            found.setdefault(node.targets[0].id, []).extend(_template(node.value, {}))
+    return found
+
+
+def _raised(source: str) -> Iterator[str]:
+    """Yield the rules, remedies and whole messages of the errors that a file raises."""
+    for function in ast.walk(ast.parse(source)):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        named = _named(function)
+        for node in ast.walk(function):
+            name = getattr(node.func, "id", "") if isinstance(node, ast.Call) else ""
+            if not isinstance(node, ast.Call) or not RAISED.search(name):
+                continue
+            whole = name == "refused" or len(node.args) == 1
+            for at, argument in enumerate(node.args):
+                if at in ({0, 1} if whole else {1, 3}):
+                    yield from _template(argument, named)
+
+
+def _files() -> Iterator[Path]:
+    top = Path(tr.__file__).parent
+    for room in ROOMS:
+        for path in [top / room] if room.endswith(".py") else sorted((top / room).rglob("*.py")):
+            if path.relative_to(top).as_posix() not in PYTHON_ONLY:
+                yield path
+
+
+def test_rules_and_remedies_are_found_in_the_source() -> None:
+    source = """def f(x):
+        remedy = f"Take {x}."
+        raise InvalidValueError("x", "must be small" if x else "must be", x, remedy)"""
+    assert list(_raised(source)) == ["must be small", "must be", "Take 3."]
+
+
+def test_every_rule_and_remedy_of_what_the_lab_computes() -> None:
+    """The rarest too, which no run of these tests comes upon."""
+    texts = (text for path in _files() for text in _raised(path.read_text(encoding="utf-8")) if " " in text)
+    found = [re.sub(r"^3 (?=[A-Z])", "", text) for text in texts]  # a sentence of another error may stand before
+    assert len(found) > 300
+    assert untold(found) == []

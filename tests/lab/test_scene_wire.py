@@ -34,7 +34,18 @@ def test_the_bytes_are_laid_out_as_the_viewer_reads_them(scene):
         begin = 16 + length + facts["offset"]
         rows, *_ = facts["shape"]
         written = np.ascontiguousarray(scene.columns[name], "<" + np.dtype(facts["dtype"]).str[1:]).tobytes()
-        assert b"".join(blob[begin + row : begin + len(written) : rows] for row in range(rows)) == written
+        differences = b"".join(blob[begin + row : begin + len(written) : rows] for row in range(rows))
+        size, side = np.dtype(facts["dtype"]).itemsize, len(written) // rows
+        back = [bytes(side), bytes(side)]  # the rows before the first
+        for row in range(rows):
+            numbers = (
+                int.from_bytes(differences[at : at + size], "little")
+                + 2 * int.from_bytes(back[-1][at - row * side : at - row * side + size], "little")
+                - int.from_bytes(back[-2][at - row * side : at - row * side + size], "little")
+                for at in range(row * side, (row + 1) * side, size)
+            )
+            back.append(b"".join((number % 256**size).to_bytes(size, "little") for number in numbers))
+        assert b"".join(back) == bytes(2 * side) + written
     assert header["columns"]["time"] == {"dtype": "float64", "shape": [201], "offset": 0, "unit": "s"}
 
 
@@ -43,6 +54,9 @@ def test_a_column_may_be_empty_or_lie_otherwise_in_memory():
         "none": np.zeros((0, 3), np.float32),
         "turned": np.arange(6.0).reshape(2, 3).T,
         "big": np.arange(4, dtype=">u4").astype("uint32"),
+        "extreme": np.array([0.0, -0.0, 5e-324, -1.7976931348623157e308, np.inf, -np.inf, 0.1]),
+        "bytes": np.array([[255, 0], [0, 255], [255, 1]], dtype=np.uint8),
+        "one": np.array([[7.0, -7.0]], dtype=np.float32),
     }
     again = unpack(pack(Scene({}, columns))).columns
     for name, column in columns.items():

@@ -231,3 +231,14 @@ def test_too_many_sliders_are_refused() -> None:
     scenario = tr.Scenario.load("rattleback")
     with pytest.raises(InvalidValueError, match="at most 8"):
         sliders_of(scenario, ["body.semi_axes", "start.angular_velocity", "start.attitude"])
+
+
+def test_the_page_has_no_sentence_that_the_server_has_not() -> None:
+    """One that is worded anew in Python, and not there, would be told of no motion any more."""
+    package = Path(tr.__file__).parent
+    sources = [package / "views/scene/headline.py", *(package / "solve/exact").glob("*.py")]
+    said = set(re.findall(r'"([^"\n]*\{\}[^"\n]*)"', "".join(path.read_text(encoding="utf-8") for path in sources)))
+    source = (Path(__file__).parents[2] / "web/src/live/headline.ts").read_text(encoding="utf-8")
+    here = {one or other for one, other in re.findall(r"'([^'\n]*\{\}[^'\n]*)'|\"([^\"\n]*\{\}[^\"\n]*)\"", source)}
+    assert len(here) > 20
+    assert here - said - {"{}"} == set()

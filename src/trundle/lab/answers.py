@@ -88,7 +88,11 @@ def run_of(
 
 @answering
 def simulate(
-    data: dict[str, Any], samples: int | None = None, card: bool = False, tolerance: float | None = None
+    data: dict[str, Any],
+    samples: int | None = None,
+    card: bool = False,
+    tolerance: float | None = None,
+    curves: bool = True,
 ) -> Answer:
     """Run a scenario and pack what a viewer needs.
 
@@ -99,11 +103,15 @@ def simulate(
     """
     from ..views.scene import pack
 
-    return Answer(pack(scene_from(data, samples, card, tolerance)), SCENE)
+    return Answer(pack(scene_from(data, samples, card, tolerance, curves)), SCENE)
 
 
 def scene_from(
-    data: dict[str, Any], samples: int | None = None, card: bool = False, tolerance: float | None = None
+    data: dict[str, Any],
+    samples: int | None = None,
+    card: bool = False,
+    tolerance: float | None = None,
+    curves: bool = True,
 ) -> Scene:
     """Run what a visitor sent, under forces or along a path, and return it as a scene.
 
@@ -119,7 +127,7 @@ def scene_from(
 
         return rolled_scene(path_from(data).run(), samples, card)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples, tolerance)
-    return scene_of(run, samples, card, seconds=seconds, curves=True)
+    return scene_of(run, samples, card, seconds=seconds, curves=curves)
 
 
 @answering

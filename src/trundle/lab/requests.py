@@ -70,6 +70,7 @@ class ToSimulate(ToDraw):
     """A scenario to be run and drawn."""
 
     tolerance: Tolerance = None
+    curves: bool = Field(default=True, description="Whether to send what may be drawn over time, a third of a scene.")
 
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]

@@ -21,8 +21,8 @@ from .requests import SCENE
 from .settings import Settings
 
 _WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")
-# What is worth compressing, and how hard gzip tries: of numbers, as in a scene, more than the least hardly saves more.
-_PACKED = {SCENE: 1} | dict.fromkeys(_WORDY, 5)
+# What is worth compressing, and how hard gzip tries: of numbers, as in a scene, more hardly saves more.
+_PACKED = {SCENE: 3} | dict.fromkeys(_WORDY, 5)
 
 
 class Lab:

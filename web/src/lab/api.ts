@@ -120,6 +120,8 @@ export interface SimulateOptions extends RequestOptions {
 export interface RunOptions extends SimulateOptions {
   /** Of a numerical method, relative, for each step; absent: the finest there is. */
   tolerance?: number
+  /** False where nothing is drawn over time: a third less is sent. */
+  curves?: boolean
 }
 
 export interface RollRequest {
@@ -538,8 +540,8 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
       packed(`/api/challenges/${name}/run`, { values, body }, options, 'challenge'),
     judged: (name, values, answer, options = {}) =>
       post(`/api/challenges/${name}/answer`, { values, answer }, options, 'judge', json<Judgement>),
-    simulate: (scenario, { tolerance, ...options } = {}) =>
-      packed('/api/simulate', { scenario, tolerance }, options, 'simulate'),
+    simulate: (scenario, { tolerance, curves, ...options } = {}) =>
+      packed('/api/simulate', { scenario, tolerance, curves }, options, 'simulate'),
     card: (scenario, options = {}) => post('/api/card', { scenario }, options, 'card', json<Card>),
     derivation: (scenario, options = {}) =>
       post('/api/derivation', { scenario }, options, 'derivation', json<Derivation>),

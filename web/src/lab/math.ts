@@ -1,7 +1,7 @@
 /** Formulas by KaTeX, built as nodes: its styles go through the CSSOM, which a strict style policy allows. */
 import katex from 'katex'
 import 'katex/dist/katex.min.css'
-import { t } from '../languages/translate'
+import { shownDigits, t } from '../languages/translate'
 import { put } from '../viewer/elements'
 import { h } from './dom'
 import { SYMBOLS } from './texts'
@@ -23,7 +23,7 @@ function math(host: HTMLElement, latex: string, display = false): void {
   put(host, 'title', meant)
   put(host, 'aria-description', meant)
   try {
-    katex.render(latex, host, {
+    katex.render(withMarks(latex), host, {
       displayMode: display,
       output: 'htmlAndMathml',
       fleqn: true,
@@ -36,6 +36,11 @@ function math(host: HTMLElement, latex: string, display = false): void {
     // What KaTeX cannot set is shown as it is written: its own way of saying so needs inline styles.
     host.replaceChildren(h('code', {}, latex))
   }
+}
+
+/** Numbers with the decimal sign of the page; in braces, or a comma would be followed by a space. */
+function withMarks(latex: string): string {
+  return latex.replace(/\d+\.\d+/g, (number) => shownDigits(number).replace(',', '{,}'))
 }
 
 /** A new element with the formula in it. */

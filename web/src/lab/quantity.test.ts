@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest'
 import { PARTS } from './parts.fixture'
-import { brief, parse, show, stepped, suited, toSI, write } from './quantity'
+import { amount, brief, parse, show, stepped, suited, toSI, write } from './quantity'
 
 const { length = {}, velocity = {}, density = {}, number = {}, angle = {} } = PARTS.units
 const turning = PARTS.units['angular velocity'] ?? {}
@@ -86,4 +86,10 @@ it('knows a unit however it is spelt', () => {
     'g/cm^3',
     'deg',
   ])
+})
+
+it('writes a number with its unit, degrees by their sign', () => {
+  expect(amount(-3, 'deg')).toBe('−3°')
+  expect(amount(33.3, 'rpm')).toBe('33.3 rpm')
+  expect(amount(2, '')).toBe('2')
 })

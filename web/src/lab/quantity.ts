@@ -123,6 +123,11 @@ export function show(value: number | null | undefined, digits = 4): string {
   return Number(value.toPrecision(digits)).toString().replace('-', '−')
 }
 
+/** A number with its unit, for people: 33.3 rpm, 3°. */
+export function amount(value: number | null | undefined, unit: string, digits = 4): string {
+  return unit === 'deg' ? `${show(value, digits)}°` : `${show(value, digits)} ${unit}`.trim()
+}
+
 function superscript(number: number): string {
   const signs: Record<string, string> = { '-': '⁻' }
   return [...String(number)].map((c) => signs[c] ?? '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)] ?? c).join('')

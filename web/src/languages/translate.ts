@@ -4,7 +4,7 @@
  * English stands where it is said; a catalogue has the other language, by the English text: `{name}` in both stands for
  * what varies. A text that is put together here or comes from the server is known again by what does not vary, if its
  * values can be said as well: numbers, which get the decimal sign of the language, and what the catalogue has. Only
- * `{title}` may be anything: it was written by somebody. What cannot be said so stays English as a whole.
+ * `{title}` (and `{title2}`) may be anything: it was written by somebody. What cannot be said so stays English as a whole.
  */
 
 /** English texts, and what they are in another language. */
@@ -20,7 +20,7 @@ interface Template {
 }
 
 const SLOT = /\{(\w+)\}/g
-const TITLE = 'title'
+const TITLE = /^title\d?$/
 const MOST = 4000 // texts that are remembered
 const LONG = 1000 // letters, more than which no text has that is put together: what is longer was written by somebody
 const VALUE = 200 // letters, more than which no value has
@@ -128,7 +128,7 @@ function takenApart(text: string): string | undefined {
   for (const { fixed, pattern, names, said } of templates) {
     const match = text.includes(fixed) ? pattern.exec(text) : null
     if (!match) continue
-    const values = names.map((name, i) => [name, name === TITLE ? t(match[i + 1]!) : sayable(match[i + 1]!)] as const)
+    const values = names.map((name, i) => [name, TITLE.test(name) ? t(match[i + 1]!) : sayable(match[i + 1]!)] as const)
     if (values.some(([, value]) => value === undefined)) continue
     const whole = filled(said, Object.fromEntries(values) as Values)
     return /^\p{Lu}/u.test(text) ? whole.charAt(0).toUpperCase() + whole.slice(1) : whole

@@ -66,7 +66,8 @@ export class LabelLayer {
 
   private write({ text, colour, kind }: Label, index: number): HTMLElement {
     const element = this.at(index)
-    say(element, text)
+    if (kind !== 'arrow') say(element, text)
+    else if (element.textContent !== text) element.textContent = text // E is a field in any language, and east in some
     if (element.dataset.kind !== kind) element.dataset.kind = kind
     element.style.setProperty('--tr-label', colour)
     hide(element, false)

@@ -148,8 +148,14 @@ export interface Scene {
 export const PHASE = { rolling: 0, slipping: 1, flight: 2, resting: 3 } as const
 
 const MAGIC = 'TRUNDLE1'
-const FORMAT = 2
+const FORMAT = 3
 const START = 16
+/** Integers of a number's width, which wrap where they overflow. */
+const WORDS: Record<number, { new (buffer: ArrayBufferLike): object }> = {
+  1: Uint8Array,
+  4: Uint32Array,
+  8: BigUint64Array,
+}
 const TYPES = { float32: Float32Array, float64: Float64Array, uint32: Uint32Array, uint8: Uint8Array }
 
 /** Read a packed scene. */
@@ -171,7 +177,7 @@ export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
   return { header, columns: columns as unknown as Columns }
 }
 
-/** A column: of its rows all first bytes stand first, then all second bytes, and so on. */
+/** A column: all first bytes of its rows, then all second bytes, and so on; these are second differences of integers. */
 function read(whole: Uint8Array, base: number, name: string, { dtype, shape, offset }: ColumnHeader): ColumnArray {
   const column = new TYPES[dtype](shape.reduce((product, side) => product * side, 1))
   const bytes = new Uint8Array(column.buffer)
@@ -182,6 +188,9 @@ function read(whole: Uint8Array, base: number, name: string, { dtype, shape, off
   const width = bytes.length / rows
   for (let plane = 0, from = begin; plane < width; plane++)
     for (let to = plane; to < bytes.length; to += width) bytes[to] = whole[from++]!
+  const words = new WORDS[column.BYTES_PER_ELEMENT]!(column.buffer) as Uint32Array // or of bigints: they add alike
+  const side = column.length / rows
+  for (let time = 0; time < 2; time++) for (let i = side; i < words.length; i++) words[i]! += words[i - side]!
   return column
 }
 

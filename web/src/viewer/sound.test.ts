@@ -37,6 +37,7 @@ class Context {
   private node = (more: object) => ({ connect: (to: unknown) => to, disconnect: () => undefined, ...more })
   createBuffer = () => ({ getChannelData: () => new Float32Array(20) })
   createBufferSource = () => this.node({ start: () => undefined })
+  createWaveShaper = () => this.node({})
   createBiquadFilter = () => this.node({ Q: {}, frequency: { setTargetAtTime: () => undefined } })
   createGain = () =>
     this.node({

@@ -23,6 +23,7 @@ const HALF_LOUD = 0.5 // m/s
 const QUIETEST = 0.02 // of the strongest landing: softer ones are not heard
 const LOUD = { rolling: 0.35, slip: 0.25, impact: 0.7 }
 const NOISE = 2 // s until it comes again
+const SUM = 4 // of amplitudes, to which they are rounded off rather than cut
 
 /** Of several bodies on one stage the fastest is heard. */
 export function heardAt(scenes: readonly Scene[], time: number): Heard {
@@ -62,6 +63,7 @@ export function loudness(speed: number): number {
   return Math.sqrt(speed / (speed + HALF_LOUD))
 }
 
+const strength = ({ impulse }: Impact) => impulse
 const finite = (value: number) => (Number.isFinite(value) ? value : 0)
 
 interface Voice {
@@ -73,6 +75,7 @@ export class Sound {
   /** For as long as the page is there. */
   private static wanted = false
   private static context: AudioContext | null = null
+  private static outlet: AudioNode
   private rolling: Voice | null = null
   private slipping: Voice | null = null
   private scenes: readonly Scene[] = []
@@ -104,9 +107,9 @@ export class Sound {
     const { rolling, slip } = heardAt(this.scenes, time)
     turn(this.rolling, context, LOUD.rolling * loudness(rolling), 90 + 500 * rolling)
     turn(this.slipping, context, LOUD.slip * loudness(slip), 1200 + 1500 * slip)
-    const strongest = Math.max(0, ...this.impacts.map(({ impulse }) => impulse))
-    for (const { time: when, impulse } of this.impacts)
-      if (when > this.last && when <= time && impulse > QUIETEST * strongest) strike(context, impulse / strongest)
+    const impulse = Math.max(0, ...this.impacts.filter((one) => one.time > this.last && one.time <= time).map(strength))
+    const share = impulse / Math.max(...this.impacts.map(strength))
+    if (share > QUIETEST) strike(context, Sound.outlet, share)
     this.last = time
   }
 
@@ -132,15 +135,27 @@ export class Sound {
 
   private open(): AudioContext | null {
     if (typeof AudioContext === 'undefined') return null
-    Sound.context ??= new AudioContext()
-    const { context } = Sound
+    if (!Sound.context) {
+      Sound.context = new AudioContext()
+      Sound.outlet = outletOf(Sound.context)
+    }
+    const { context, outlet } = Sound
     if (!this.rolling) {
       const noise = noiseOf(context)
-      this.rolling = voice(context, noise, 'lowpass', 1)
-      this.slipping = voice(context, noise, 'bandpass', 4)
+      this.rolling = voice(context, noise, outlet, 'lowpass', 1)
+      this.slipping = voice(context, noise, outlet, 'bandpass', 4)
     }
     return context
   }
+}
+
+/** What all is heard through: however much sounds at once, it is rounded off below 1, and nothing clips. */
+function outletOf(context: AudioContext): AudioNode {
+  const [share, soft] = [context.createGain(), context.createWaveShaper()]
+  share.gain.value = 1 / SUM
+  soft.curve = Float32Array.from({ length: 1025 }, (_, i) => Math.tanh(SUM * (i / 512 - 1)))
+  share.connect(soft).connect(context.destination)
+  return share
 }
 
 function noiseOf(context: AudioContext): AudioBufferSourceNode {
@@ -154,13 +169,19 @@ function noiseOf(context: AudioContext): AudioBufferSourceNode {
   return source
 }
 
-function voice(context: AudioContext, noise: AudioNode, type: BiquadFilterType, sharpness: number): Voice {
+function voice(
+  context: AudioContext,
+  noise: AudioNode,
+  outlet: AudioNode,
+  type: BiquadFilterType,
+  sharpness: number,
+): Voice {
   const filter = context.createBiquadFilter()
   filter.type = type
   filter.Q.value = sharpness
   const gain = context.createGain()
   gain.gain.value = 0
-  noise.connect(filter).connect(gain).connect(context.destination)
+  noise.connect(filter).connect(gain).connect(outlet)
   return { filter, gain }
 }
 
@@ -170,13 +191,13 @@ function turn({ filter, gain }: Voice, context: AudioContext, loud: number, pitc
 }
 
 /** A knock, the deeper the harder. */
-function strike(context: AudioContext, share: number): void {
+function strike(context: AudioContext, outlet: AudioNode, share: number): void {
   const [tone, gain, now] = [context.createOscillator(), context.createGain(), context.currentTime]
   tone.frequency.setValueAtTime(420 - 200 * share, now)
   tone.frequency.exponentialRampToValueAtTime(90, now + 0.12)
   gain.gain.setValueAtTime(LOUD.impact * Math.sqrt(share), now)
   gain.gain.exponentialRampToValueAtTime(1e-4, now + 0.18)
-  tone.connect(gain).connect(context.destination)
+  tone.connect(gain).connect(outlet)
   tone.start(now)
   tone.stop(now + 0.2)
 }

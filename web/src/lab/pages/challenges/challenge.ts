@@ -7,7 +7,7 @@ import { isAbort } from '../../api'
 import type { App } from '../../app'
 import { cleanup, fill, h, uniqueId } from '../../dom'
 import { type Found, note, readNotebook } from '../../notebook'
-import { parse, show } from '../../quantity'
+import { amount, parse, show } from '../../quantity'
 import { createRunner } from '../../runner'
 import type { Scenario } from '../../scenario'
 import { encode } from '../../share'
@@ -72,7 +72,7 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
       max: one.most,
       step: one.step,
       value: one.first,
-      words: (value) => `${show(value)} ${one.unit}`.trim(),
+      words: (value) => amount(value, one.unit),
       change: (value) => {
         values[one.name] = value
         live.ask({ ...values })
@@ -134,7 +134,7 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
       right,
       hints: asked,
       answer: answer === null ? '' : String(answer),
-      chosen: challenge.controls.map(({ name: one, label, unit }) => `${label}: ${show(values[one])} ${unit}`.trim()),
+      chosen: challenge.controls.map(({ name: one, label, unit }) => `${label}: ${amount(values[one], unit)}`),
       link: scenario ? `#/bench?s=${await encode(scenario as unknown as Scenario)}` : '',
     })
     const picture = await thumbnail(viewer)
@@ -289,7 +289,7 @@ export function findings(found: readonly Found[]): HTMLElement {
             {},
             h('th', { scope: 'row' }, one.said),
             h('td', {}, bounds(one)),
-            h('td', {}, `${show(one.value, 3)} ${one.unit}`.trim()),
+            h('td', {}, amount(one.value, one.unit, 3)),
             h('td', {}, one.held ? `✓ ${CHALLENGE.held}` : `✗ ${CHALLENGE.missed}`),
           ),
         ),
@@ -299,7 +299,7 @@ export function findings(found: readonly Found[]): HTMLElement {
 }
 
 function bounds({ least, most, unit }: Found): string {
-  const written = (value: number) => `${show(value)} ${unit}`.trim()
+  const written = (value: number) => amount(value, unit)
   if (least !== null && most !== null) return CHALLENGE.between(show(least), written(most))
   if (least !== null) return CHALLENGE.atLeast(written(least))
   return most === 0 ? CHALLENGE.none : CHALLENGE.atMost(written(most ?? 0))

@@ -49,7 +49,7 @@ function on(table: Table, body: Scenario['body'], title: string): Scenario {
       motion: { kind: 'spin', rate: `${table.rate} rpm` },
     },
     start: startOf(table),
-    run: { duration: '20 s', every: '20 ms', method: 'auto' },
+    run: { duration: '20 s', every: '40 ms', method: 'auto' },
   }
 }
 

@@ -66,9 +66,8 @@ export const compare: Page = {
 }
 
 async function simulateAll(app: App, table: Table, signal: AbortSignal): Promise<Found> {
-  const scenes = await Promise.all(
-    CONTESTANTS.map((one) => app.api.simulate(one.scenario(table), { lane: null, signal, samples: 1001 })),
-  )
+  const options = { lane: null, signal, samples: 501, curves: false }
+  const scenes = await Promise.all(CONTESTANTS.map((one) => app.api.simulate(one.scenario(table), options)))
   return new Map(
     CONTESTANTS.map(({ id, name, wrong }, i) => [id, named(scenes[i]!.scene, wrong ? 'Intuition (wrong)' : name)]),
   )

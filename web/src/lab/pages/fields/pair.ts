@@ -35,7 +35,10 @@ export function createPair(app: App, shown: (both: Both) => void, ticked: (time:
   const live = createRunner<Scenario, Both>({
     async run(scenario, signal) {
       const options = { lane: null, signal }
-      const [ball, charge] = await Promise.all([app.api.simulate(scenario, options), app.api.twin(scenario, options)])
+      const [ball, charge] = await Promise.all([
+        app.api.simulate(scenario, { ...options, curves: false }),
+        app.api.twin(scenario, options),
+      ])
       return { ball: ball.scene, charge: charge.scene }
     },
     done(both) {
