@@ -201,11 +201,7 @@ function row(
     ),
     h('td', { class: 'number' }, one.ratio),
     h('td', { class: 'number' }, one.wrong ? '–' : predicted(one.share)),
-    h(
-      'td',
-      { class: 'number' },
-      measured === null || omega === 0 ? '–' : withPlaces(measured / omega, 4),
-    ),
+    h('td', { class: 'number' }, measured === null || omega === 0 ? '–' : withPlaces(measured / omega, 4)),
     h('td', { class: 'number' }, measured === null ? '–' : [written(measured), h('span', { class: 'unit' }, ' rad/s')]),
   )
 }
