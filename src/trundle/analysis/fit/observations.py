@@ -27,7 +27,7 @@ _DEGREE = 3
 
 def unit_of(column: str) -> str:
     """Return the SI unit of a column of `COLUMNS`."""
-    return UNITS[COLUMNS[column]][0]
+    return UNITS[COLUMNS[column] or "number"][0]
 
 
 @dataclass(frozen=True)
