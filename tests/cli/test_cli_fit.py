@@ -66,6 +66,14 @@ def test_it_prints_the_numbers_and_writes_all_of_it(trundle: Command) -> None:
     assert "http" not in Path("track/fit.html").read_text(encoding="utf-8").replace("http://www.w3.org", "")
 
 
+@pytest.mark.parametrize(("form", "ending"), [("latex", "tex"), ("markdown", "md"), ("csv", "csv")])
+def test_the_last_line_of_a_table_ends(here: Command, form: str, ending: str) -> None:
+    here("fit", "track.csv", *ASKED, "--no-figure", "--table", form)
+    text = Path(f"track/fit.{ending}").read_bytes()
+    assert text.endswith(b"\n")
+    assert not text.endswith(b"\n\n")
+
+
 def test_a_bad_fit_says_what_may_be_missing_and_leaves_with_3(here: Command) -> None:
     done = here("fit", "puck.csv", *ASKED[:2], "--noise", "0.5 mm", "--no-figure", "-o", "out")
     assert done.status == 3

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from itertools import chain, product
+
 import numpy as np
 import pytest
 import xarray
@@ -9,6 +13,9 @@ from tests.fitting.coverage import CASES, chances, distances
 from tests.fitting.measured import ball, on_turntable, scenario, seen, turntable
 
 import trundle as tr
+from trundle.analysis.fit import report
+from trundle.analysis.fit.observations import COLUMNS, unit_of
+from trundle.analysis.fit.undetermined import pm
 
 K, RATE = "body.inertia_ratio", "support.motion.rate"
 T = np.arange(300) / 30.0
@@ -67,6 +74,39 @@ def test_a_file_holds_data_fit_and_covariance(fitted: tr.Fit, tmp_path) -> None:
         assert float(kept.sigma.sel(parameter="start.velocity[1]")) > 0
         assert "do not tell" in kept.attrs["undetermined"]
         tr.Scenario.loads(kept.attrs["scenario"]).run()
+
+
+def test_a_file_names_the_unit_of_each_value(fitted: tr.Fit, tmp_path) -> None:
+    with xarray.open_dataset(fitted.save(tmp_path / "fit.nc"), engine="h5netcdf") as kept:
+        assert [str(kept.measured.sel(column=name).column_unit.item()) for name in "xy"] == ["m", "m"]
+        assert kept.value.sel(parameter=K).unit.item() == "1"
+        assert kept.covariance.sel(parameter=K, parameter_2="start.velocity[1]").unit_2.item() == "m/s"
+        for variable in kept.data_vars.values():
+            for named in variable.attrs["units"].removeprefix("see ").split(",")[0].split(" and "):
+                assert set(kept[named].dims) <= set(variable.dims)
+
+
+def test_the_unit_of_each_column_is_that_of_its_kind() -> None:
+    wanted = {"m": "x y z mark_x mark_y spot_x spot_y spot_z", "m/s": "vx vy vz", "rad": "angle"}
+    wanted["rad/s"] = "wx wy wz gyro_x gyro_y gyro_z"
+    assert {name: unit_of(name) for name in COLUMNS} == {n: unit for unit, all_ in wanted.items() for n in all_.split()}
+
+
+def test_no_table_or_figure_shows_a_zero_with_a_minus(fitted: tr.Fit) -> None:
+    size = len(fitted.values)
+    tiny = tuple(
+        replace(one, value=-0.0 if one.sigma is None else -1e-12, sigma=one.sigma and 1.0) for one in fitted.estimates
+    )
+    told = replace(fitted, estimates=tiny, covariance=np.eye(size) - 1e-9 * (1 - np.eye(size)))
+    shown = [told.table(), told.table("latex"), *chain(*report.correlation_cells(told)[0])]
+    shown += [text.get_text() for panel in told.plot().axes for text in panel.texts]
+    assert not re.findall(r"[-−]0(?:\.0+)?(?![.\d])", "\n".join(shown))
+
+
+@pytest.mark.parametrize(("value", "sigma"), [*product((-1e-12, -3e-7, -0.0, -1e5), (0.0, 2e-9, 0.02, 3.0, 2e7))])
+def test_a_value_that_rounds_to_zero_has_no_sign(value: float, sigma: float) -> None:
+    shown = pm(value, sigma).split(" ")[0].strip("(")
+    assert shown[0] != "-" or float(shown) != 0
 
 
 def test_each_form_of_table_has_each_number(fitted: tr.Fit) -> None:

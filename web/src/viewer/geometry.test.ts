@@ -93,4 +93,6 @@ test('numbers are written as people read them', () => {
   ])
   expect(steadyNumber(0.5, 0.7)).toBe('0.500')
   expect(steadyNumber(Number.NaN, 1)).toBe('–')
+  expect(steadyNumber(-1e-9, 1)).toBe('0.00') // no minus before nothing
+  expect(steadyNumber(-0.25, 1)).toBe('−0.25')
 })

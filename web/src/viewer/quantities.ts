@@ -57,7 +57,12 @@ export function shortNumber(value: number): string {
 export function steadyNumber(value: number, size: number): string {
   if (!Number.isFinite(value)) return '–'
   const places = Math.min(6, Math.max(0, 2 - Math.floor(Math.log10(Math.max(Math.abs(size), 1e-6)))))
-  return value.toFixed(places).replace('-', '−')
+  return withPlaces(value, places)
+}
+
+/** So many places, with a minus sign unless all of them are zero. */
+export function withPlaces(value: number, places: number): string {
+  return (Number(value.toFixed(places)) + 0).toFixed(places).replace('-', '−')
 }
 
 const SUPERSCRIPTS = '⁰¹²³⁴⁵⁶⁷⁸⁹'

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...views.plots.sheet import BLUE, FAINT, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, Sheet, look
 from . import report
+from .observations import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 _COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 _MARKS = ("o", "s", "^", "D", "v", "P")
-_UNITS = {"v": "m/s", "w": "rad/s", "a": "rad"}
 
 
 def draw(fit: Fit) -> Figure:
@@ -50,7 +50,7 @@ def _over_time(fit: Fit, predicted: list[Any], panel: Any) -> None:
     for i, (model, found) in enumerate(zip(fit.problem.models, predicted, strict=True)):
         for c, name in enumerate(model.seen.columns):
             style = {"color": _COLOURS[(i + c) % 6], "marker": _MARKS[c % 6], "ms": 2.2, "lw": 0, "alpha": 0.45}
-            panel.plot(model.seen.time, model.seen.values[:, c], label=f"{name}, {_unit(name)}", mew=0, **style)
+            panel.plot(model.seen.time, model.seen.values[:, c], label=f"{name}, {unit_of(name)}", mew=0, **style)
             panel.plot(model.seen.time, found[:, c], color=INK, lw=1.0)
     panel.set(xlabel="t, s", ylabel="measured, and fit (black)")
     panel.legend(fontsize=8)
@@ -89,8 +89,4 @@ def _correlations(fit: Fit, panel: Any) -> None:
     for i in range(len(names)):
         for j in range(len(names)):
             shade = "white" if abs(of[i, j]) > 0.6 else INK
-            panel.text(j, i, f"{of[i, j]:.1f}", ha="center", va="center", fontsize=6, color=shade)
-
-
-def _unit(column: str) -> str:
-    return "m" if column in ("x", "y", "z") else _UNITS.get(column[0], "m")
+            panel.text(j, i, f"{of[i, j]:z.1f}", ha="center", va="center", fontsize=6, color=shade)

@@ -25,6 +25,11 @@ _HALF = 4  # rows to either side of one, whose polynomial shows the noise
 _DEGREE = 3
 
 
+def unit_of(column: str) -> str:
+    """Return the SI unit of a column of `COLUMNS`."""
+    return UNITS[COLUMNS[column] or "number"][0]
+
+
 @dataclass(frozen=True)
 class Observations:
     """The measured values of one run."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...errors import UnknownNameError
 from ...solve.samples import Array
+from .observations import unit_of
 from .unknowns import OUTSIDE, of_run
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def correlation_cells(fit: Fit) -> tuple[list[list[str]], list[str]]:
     from .result import correlation
 
     of = correlation(fit.covariance)
-    rows = [[one.name, *(f"{part:.2f}" for part in of[i])] for i, one in enumerate(fit.estimates)]
+    rows = [[one.name, *(f"{part:z.2f}" for part in of[i])] for i, one in enumerate(fit.estimates)]
     return rows, ["", *(str(i + 1) for i in range(len(rows)))]
 
 
@@ -144,19 +145,25 @@ def dataset(fit: Fit) -> xarray.Dataset:
     sigma = whole([np.where(m.seen.known, n.sigma, np.nan) for m, n in zip(models, fit.problem.noises, strict=True)])
     each = fit.estimates
     names = [one.name for one in each]
+    of_column, of_parameter = {"units": "see column_unit"}, {"units": "see unit"}  # one each: no word fits all
     variables: dict[str, Any] = {
-        "measured": (("row", "column"), measured, {"long_name": "measured", "units": "SI"}),
-        "fitted": (("row", "column"), said, {"long_name": "by the fit", "units": "SI"}),
-        "residual": (("row", "column"), measured - said, {"long_name": "measured less fitted", "units": "SI"}),
-        "noise": (("row", "column"), sigma, {"long_name": "standard deviation of a value", "units": "SI"}),
-        "value": (("parameter",), fit.values, {"long_name": "fitted value", "units": "SI"}),
+        "measured": (("row", "column"), measured, {"long_name": "measured", **of_column}),
+        "fitted": (("row", "column"), said, {"long_name": "by the fit", **of_column}),
+        "residual": (("row", "column"), measured - said, {"long_name": "measured less fitted", **of_column}),
+        "noise": (("row", "column"), sigma, {"long_name": "standard deviation of a value", **of_column}),
+        "value": (("parameter",), fit.values, {"long_name": "fitted value", **of_parameter}),
         "sigma": (
             ("parameter",),
             np.array([np.nan if one.sigma is None else one.sigma for one in each]),
-            {"long_name": "standard deviation; none where the data do not fix the number", "units": "SI"},
+            {"long_name": "standard deviation; none where the data do not fix the number", **of_parameter},
         ),
-        "covariance": (("parameter", "parameter_2"), fit.covariance, {"long_name": "covariance", "units": "SI"}),
+        "covariance": (
+            ("parameter", "parameter_2"),
+            fit.covariance,
+            {"long_name": "covariance", "units": "see unit and unit_2, whose product it is"},
+        ),
     }
+    units = np.array([one.unit or "1" for one in each], dtype=object)
     coordinates = {
         "time": ("row", np.concatenate([one.seen.time for one in models]), {"units": "s"}),
         "run": ("row", np.concatenate([np.full(one.seen.time.size, i) for i, one in enumerate(models)])),
@@ -164,7 +171,9 @@ def dataset(fit: Fit) -> xarray.Dataset:
         "column": np.array(columns, dtype=object),
         "parameter": np.array(names, dtype=object),
         "parameter_2": np.array(names, dtype=object),
-        "unit": ("parameter", np.array([one.unit for one in each], dtype=object)),
+        "column_unit": ("column", np.array([unit_of(name) for name in columns], dtype=object)),
+        "unit": ("parameter", units),
+        "unit_2": ("parameter_2", units),
         "state": ("parameter", np.array([one.state for one in each], dtype=object)),
     }
     about = {

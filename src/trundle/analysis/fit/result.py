@@ -79,11 +79,11 @@ class Estimate:
             beyond = self.alone - self.value
             if abs(beyond) > _SAYS * self.alone_sigma:  # so far off a straight line from the limit tells no value
                 asked = "more" if beyond > 0 else "less"
-                return f"{self.value:.6g}", self.unit, f"at its limit; the data ask for {asked}"
-            return f"{self.value:.6g}", self.unit, f"at its limit; the data say {pm(self.alone, self.alone_sigma)}"
+                return f"{self.value:z.6g}", self.unit, f"at its limit; the data ask for {asked}"
+            return f"{self.value:z.6g}", self.unit, f"at its limit; the data say {pm(self.alone, self.alone_sigma)}"
         if self.sigma is None:
             known = "held: the data do not fix it" if self.state == "held" else "only together, see below"
-            return f"{self.value:.6g}", self.unit, known
+            return f"{self.value:z.6g}", self.unit, known
         return pm(self.value, self.sigma), self.unit, ""
 
     def __str__(self) -> str:

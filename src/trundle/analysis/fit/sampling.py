@@ -65,7 +65,7 @@ class Samples(Displayed):
         """Median and the limits of one standard deviation, of each number that varies."""
         each = np.quantile(self.draws, _QUANTILES, axis=0).T
         told = zip(self.names, each, self.units, strict=True)
-        return [(name, *(f"{part:.6g}" for part in parts), unit) for name, parts, unit in told if np.ptp(parts) > 0]
+        return [(name, *(f"{part:z.6g}" for part in parts), unit) for name, parts, unit in told if np.ptp(parts) > 0]
 
     @property
     def verdict(self) -> str:

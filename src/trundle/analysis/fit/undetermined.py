@@ -126,17 +126,17 @@ def pm(value: float, sigma: float) -> str:
 
     Examples
     --------
-    >>> pm(0.39999581, 2.06e-05), pm(1234.56, 78.9), pm(2.0, 0.0)
-    ('0.399996 ± 0.000021', '1235 ± 79', '2 ± 0')
+    >>> pm(0.39999581, 2.06e-05), pm(1234.56, 78.9), pm(2.0, 0.0), pm(-1e-9, 0.02)
+    ('0.399996 ± 0.000021', '1235 ± 79', '2 ± 0', '0.000 ± 0.020')
     """
     if not (np.isfinite(sigma) and sigma > 0):
-        return f"{value:.6g}" + (" ± 0" if sigma == 0 else "")
+        return f"{value:z.6g}" + (" ± 0" if sigma == 0 else "")
     place = 1 - int(np.floor(np.log10(float(f"{sigma:.1e}"))))
     if place > 8 or place < -6 or abs(value) >= 1e7:
         power = int(np.floor(np.log10(max(abs(value), sigma))))
         digits = max(place + power, 0)
-        return f"({value / 10.0**power:.{digits}f} ± {sigma / 10.0**power:.{digits}f})e{power}"
-    return f"{round(value, place):.{max(place, 0)}f} ± {round(sigma, place):.{max(place, 0)}f}"
+        return f"({value / 10.0**power:z.{digits}f} ± {sigma / 10.0**power:.{digits}f})e{power}"
+    return f"{round(value, place):z.{max(place, 0)}f} ± {round(sigma, place):.{max(place, 0)}f}"
 
 
 def undetermined(

@@ -162,7 +162,7 @@ class VakonomicComparison(Serializable):
         return [
             (
                 f"{t:.3f} s",
-                *(f"({z.real:9.4f}, {z.imag:9.4f}) m" for z in (ball, other)),
+                *(f"({z.real:z9.4f}, {z.imag:z9.4f}) m" for z in (ball, other)),
                 f"{short(abs(other - ball) / unit.scale, 3)} {unit.symbol}",
             )
             for t, ball, other in self.rows()

@@ -1,4 +1,5 @@
 /** Several balls on one turntable, beside a puck on ice and the guess that most of us would make. */
+import { withPlaces } from '../../../viewer/quantities'
 import type { Scene } from '../../../viewer/scene'
 import type { App, Page } from '../../app'
 import { cleanup, fill, h } from '../../dom'
@@ -130,7 +131,6 @@ function layout(stage: HTMLElement, tools: HTMLElement, body: HTMLElement): HTML
 }
 
 function controls(table: Table, change: (part: Partial<Table>) => void): HTMLElement {
-  const signed = (value: number, digits: number) => value.toFixed(digits).replace('-', '−')
   return h(
     'div',
     { class: 'knobs' },
@@ -140,7 +140,7 @@ function controls(table: Table, change: (part: Partial<Table>) => void): HTMLEle
       max: 78,
       step: 0.1,
       value: table.rate,
-      words: (rate) => `${signed(rate, 1)} rpm`,
+      words: (rate) => `${withPlaces(rate, 1)} rpm`,
       change: (rate) => change({ rate }),
       testid: 'compare-rate',
     }).element,
@@ -200,11 +200,7 @@ function row(
     ),
     h('td', { class: 'number' }, one.ratio),
     h('td', { class: 'number' }, one.wrong ? '–' : predicted(one.share)),
-    h(
-      'td',
-      { class: 'number' },
-      measured === null || omega === 0 ? '–' : (measured / omega).toFixed(4).replace('-', '−'),
-    ),
+    h('td', { class: 'number' }, measured === null || omega === 0 ? '–' : withPlaces(measured / omega, 4)),
     h('td', { class: 'number' }, measured === null ? '–' : [written(measured), h('span', { class: 'unit' }, ' rad/s')]),
   )
 }

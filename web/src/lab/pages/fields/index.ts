@@ -1,5 +1,6 @@
 /** The turntable beside the crossed fields: shared controls, one clock, and a dictionary with the current numbers. */
 import { say } from '../../../viewer/elements'
+import { withPlaces } from '../../../viewer/quantities'
 import type { Scene } from '../../../viewer/scene'
 import type { Page } from '../../app'
 import { cleanup, fill, h } from '../../dom'
@@ -56,7 +57,7 @@ export const fields: Page = {
         max: 0.3,
         step: 0.01,
         value: setting.tilt,
-        words: (tilt) => `${tilt.toFixed(2)}°`.replace('-', '−'),
+        words: (tilt) => `${withPlaces(tilt, 2)}°`,
         change: (tilt) => change({ tilt }),
         testid: 'fields-tilt',
       }).element,
@@ -66,7 +67,7 @@ export const fields: Page = {
         max: 78,
         step: 0.1,
         value: setting.rate,
-        words: (rate) => `${rate.toFixed(1)} rpm`.replace('-', '−'),
+        words: (rate) => `${withPlaces(rate, 1)} rpm`,
         change: (rate) => change({ rate }),
         testid: 'fields-rate',
       }).element,

@@ -1,6 +1,7 @@
 /** Step 7: the ball and the charge, moving in step. */
 
 import { say } from '../../../viewer/elements'
+import { withPlaces } from '../../../viewer/quantities'
 import { show } from '../../quantity'
 import type { Scenario } from '../../scenario'
 import { chargeOf } from '../fields/charge'
@@ -40,7 +41,7 @@ export const mountFields: StepMount = ({ app, stage, controls, numbers, worked, 
     max: 0.3,
     step: 0.01,
     value: tilt,
-    words: (degrees) => `${degrees.toFixed(2)}°`.replace('-', '−'),
+    words: (degrees) => `${withPlaces(degrees, 2)}°`,
     change(degrees) {
       tilt = degrees
       ask()
