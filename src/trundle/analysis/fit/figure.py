@@ -26,7 +26,7 @@ def draw(fit: Fit) -> Figure:
         sheet.head(fit.title or "Fit", fit.verdict)
         predicted = report.predicted(fit)
         both = all({"x", "y"} <= set(model.seen.columns) for model in fit.problem.models)
-        (_path if both else _over_time)(fit, predicted, sheet.add_box(0.75, 3.0, 4.6, 3.55))
+        (_path if both else _over_time)(fit, predicted, sheet.add_box(0.75, 3.0, 4.6, 3.45))
         _correlations(fit, sheet.add_box(7.6, 3.75, 2.15, 2.8))
         _residuals(fit, predicted, sheet.add_box(0.75, 0.6, 9.0, 1.75))
     return sheet
@@ -42,7 +42,7 @@ def _path(fit: Fit, predicted: list[Any], panel: Any) -> None:
         panel.plot(found[:, x], found[:, y], color=INK, lw=1.0, label="fit" if i == 0 else None)
     panel.set_aspect("equal", adjustable="datalim")
     panel.set(xlabel="x, m", ylabel="y, m")
-    panel.legend(loc="upper right", fontsize=8)
+    _legend(panel, "left")
 
 
 def _over_time(fit: Fit, predicted: list[Any], panel: Any) -> None:
@@ -53,7 +53,7 @@ def _over_time(fit: Fit, predicted: list[Any], panel: Any) -> None:
             panel.plot(model.seen.time, model.seen.values[:, c], label=f"{name}, {unit_of(name)}", mew=0, **style)
             panel.plot(model.seen.time, found[:, c], color=INK, lw=1.0)
     panel.set(xlabel="t, s", ylabel="measured, and fit (black)")
-    panel.legend(fontsize=8)
+    _legend(panel, "left")
 
 
 def _residuals(fit: Fit, predicted: list[Any], panel: Any) -> None:
@@ -68,7 +68,13 @@ def _residuals(fit: Fit, predicted: list[Any], panel: Any) -> None:
                 model.seen.time, off, _MARKS[c % 6], ms=2.0, color=_COLOURS[(i + c) % 6], mew=0, label=name + several
             )
     panel.set(xlabel="t, s", ylabel="residual, σ")
-    panel.legend(ncols=4, fontsize=8, loc="upper right")
+    _legend(panel, "right")
+
+
+def _legend(panel: Any, side: str) -> None:
+    """Say above a panel what it shows, where nothing is hidden."""
+    at, columns = (float(side == "right"), 1.0), 6 if side == "right" else 3
+    panel.legend(loc=f"lower {side}", bbox_to_anchor=at, ncols=columns, fontsize=8, borderaxespad=0.2, frameon=False)
 
 
 def _correlations(fit: Fit, panel: Any) -> None:
