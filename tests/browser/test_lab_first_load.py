@@ -6,24 +6,15 @@ import pytest
 from playwright.sync_api import expect
 
 from .launching import LAPTOP, PATIENCE
-from .visiting import Visitor
+from .visiting import PAGES, Visitor
 
 MOST = 700_000  # bytes as sent
 ROUTES = [
-    "#/",
+    *PAGES,
     "#/tour/1",
     "#/tour/4",
     "#/bench",
-    "#/challenges",
     "#/challenges/which-is-hollow",
-    "#/report",
-    "#/notes",
-    "#/compare",
-    "#/fields",
-    "#/holonomy",
-    "#/holonomy/orders",
-    "#/holonomy/loop",
-    "#/maps",
     "#/measure?example=ball-on-a-ramp",
 ]
 

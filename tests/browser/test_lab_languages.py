@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from .launching import PATIENCE, PHONE
-from .visiting import Visitor
+from .visiting import PAGES, Visitor
 
 # What of the page has vowels without marks: what is in no catalogue. Formulas, files, citations and units are no words.
 PLAIN = """() => {
@@ -55,18 +55,9 @@ def ready(visitor: Visitor, route: str, **options: Any) -> Page:
 
 
 ROUTES = [
-    "#/",
+    *PAGES,
     *(f"#/tour/{step}" for step in range(1, 8)),
-    "#/challenges",
     "#/challenges/one-round-in-five-seconds",
-    "#/report",
-    "#/notes",
-    "#/compare",
-    "#/fields",
-    "#/holonomy",
-    "#/holonomy/orders",
-    "#/holonomy/loop",
-    "#/maps",
     "#/measure",
 ]
 

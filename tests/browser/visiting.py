@@ -11,6 +11,19 @@ from playwright.sync_api import Browser, BrowserContext, Page
 from .launching import PATIENCE, SMALL
 from .watching import Watch
 
+# Pages that are there as they are, beside those of the tour, one challenge, the bench and Measure.
+PAGES = (
+    "#/",
+    "#/challenges",
+    "#/report",
+    "#/notes",
+    "#/compare",
+    "#/fields",
+    "#/holonomy",
+    "#/holonomy/orders",
+    "#/holonomy/loop",
+    "#/maps",
+)
 # Everything is made ready to be drawn, and nothing is: the page is told of no difference.
 UNDRAWN = """
 for (const way of ['drawArrays', 'drawArraysInstanced', 'drawElements', 'drawElementsInstanced'])
