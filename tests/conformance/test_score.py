@@ -69,6 +69,9 @@ def test_the_cause_is_the_ablation_that_leaves_least() -> None:
     cell = Score(plateau + little + nothing).profiles[0]
     assert (cell.name, cell.cause) == ("plateaus", "no damping")
     assert Score(plateau + nothing).profiles[0].cause == ""
+    less = rows(1e-1, 5e-3, setting="no limit", of="as shipped")
+    for order_of in (little + less, less + little):
+        assert Score(plateau + order_of).profiles[0].cause == "no limit"
     double = rows(1e-1, 1e-2, setting="double precision", of="as shipped")
     assert Score(plateau + double).profiles[0].name == "float32 floor"
 

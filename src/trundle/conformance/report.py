@@ -144,8 +144,8 @@ def page(score: Score, cases: Sequence[Case]) -> str:
         *_of_derivatives(score.derivatives, known),
         Markup("<h2>What takes a plateau away</h2>"),
         _p(
-            "Each row differs from a profile in one thing. Where an error that stays in the profile falls here, that"
-            " one thing is its cause."
+            "Each row differs from a profile in what its name says. Where an error that stays in the profile falls"
+            " here, that is its cause."
         ),
         _table(_matrix(cell for cell in score.cells if cell.rows[0].of and not cell.way), names, known),
         Markup("<h2>Case by case</h2>"),

@@ -238,7 +238,7 @@ class Score(Displayed):
 
     def _cause(self, rows: tuple[Row, ...], groups: dict[_Key, tuple[Row, ...]]) -> str:
         """Return the ablation of this setting that leaves least of the error, if it leaves little."""
-        best, left = "", _LESS
+        best, least = "", math.inf
         engine, profile, *same = rows[0].cell
         for (other_engine, setting, *other_same), others in groups.items():
             if (other_engine, other_same) != (engine, same) or others[0].of != profile:
@@ -246,9 +246,9 @@ class Score(Displayed):
             for mine, other in zip(reversed(rows), reversed(others), strict=False):
                 if math.isfinite(other.worst) and mine.step == other.step:
                     share = other.worst / mine.worst if math.isfinite(mine.worst) and mine.worst > 0 else 0.0
-                    found = mine.lost and not other.lost and share < 1  # of one that is lost, the error is larger
-                    if share < left or (found and not best):
-                        best, left = setting, min(share, left)
+                    enough = 1.0 if mine.lost and not other.lost else _LESS  # the error of one that is lost is larger
+                    if share < min(enough, least):
+                        best, least = setting, share
                     break
         return best
 

@@ -28,7 +28,9 @@ def model(task: Task, *, moving: bool = True) -> str:
     if "solref_steps" in task["setting"]:  # a time constant tied to the step
         chosen["solref"] = [task["setting"]["solref_steps"] * task["dt"], 1.0]
     soft = f'solref="{_row(chosen["solref"])}" solimp="{_row(chosen["solimp"])}" condim="3"'
-    along = task["setting"].get("solreffriction")  # its own for the directions of friction; of named pairs only
+    along = task["setting"].get("solreffriction")  # its own for the directions of friction
+    if along and "mesh" in task["support"]:
+        raise CannotError("solreffriction is of named pairs, and pieces of a mesh are none here")
     slow = f' solreffriction="{_row(along)}"' if along else ""
     support, motion = task["support"], task["support"]["motion"]
     assets = ""
