@@ -3,6 +3,7 @@ import type { Vector3 } from 'three'
 import type { Triple } from './scene'
 
 const LAST = 100 // ms that tell
+const BUSY = 500 // ms: a page may be so busy that it hears of a moving hand no sooner
 const STILL = 80 // ms without a move: it is put down
 
 export class Swing {
@@ -12,7 +13,8 @@ export class Swing {
   constructor(private readonly least: number) {}
 
   add(at: number, place: Vector3): void {
-    this.moves = this.moves.filter((move) => at - move.at <= LAST)
+    const recent = this.moves.filter((move) => at - move.at <= LAST)
+    this.moves = recent.length ? recent : this.moves.slice(-1).filter((move) => at - move.at <= BUSY)
     this.moves.push({ at, place: place.clone() })
   }
 

@@ -50,8 +50,7 @@ export class Tools {
 
   private down(event: PointerEvent): void {
     if (event.target !== this.canvas || event.button !== 0 || !this.acts) return
-    const [x, y] = this.at(event)
-    this.gesture = this.begin(x, y)
+    this.gesture = this.begin(...this.at(event), event.timeStamp)
     if (!this.gesture) return
     event.stopPropagation()
     this.canvas.setPointerCapture(event.pointerId)
@@ -68,11 +67,11 @@ export class Tools {
     return this.acts && (this.tool === 'draw' || this.nearBall(x, y))
   }
 
-  private begin(x: number, y: number): Gesture | null {
+  private begin(x: number, y: number, at: number): Gesture | null {
     if (this.tool === 'draw') return this.draw(x, y)
     if (!this.nearBall(x, y)) return null
     if (this.tool === 'velocity' || this.tool === 'nudge') return this.throw(this.tool === 'nudge')
-    return this.drag(x, y)
+    return this.drag(x, y, at)
   }
 
   private move(event: PointerEvent): void {
@@ -108,13 +107,14 @@ export class Tools {
     return Math.hypot(at.x - x, at.y - y) <= Math.max(REACH, 1.2 * large)
   }
 
-  private drag(x: number, y: number): Gesture {
+  private drag(x: number, y: number, begun: number): Gesture {
     const { body } = this.world.actors[0]!
     const contact = body.track.contact(new Vector3())
     const place = body.group.position.clone()
     const lift = place.clone().sub(contact)
     const find = this.finder(x, y, contact)
     const swing = new Swing(LEAST * this.stage.metresPerPixel(place))
+    swing.add(begun, place)
     const here = () => ({ x: place.x, y: place.y, z: place.z, contact: contact.toArray() })
     let taken = false
     return {
