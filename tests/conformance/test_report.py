@@ -222,7 +222,12 @@ def test_an_engine_that_is_installed_is_pushed(name: str) -> None:
 CAUSES = [  # engine, case, step, the setting that has an error, the one that takes it away
     ("dart", "billiard-swerve", 1e-3, "as shipped", "a round cone of friction"),
     ("dart", "billiard-swerve", 1e-3, "friction pyramid", "best"),
-    ("ode", "billiard-swerve", 1e-3, "best", "pyramid along the slip"),
+    ("ode", "billiard-swerve", 1e-3, "best", "friction along the slip"),
+    ("ode", "diagonal-box", 1e-3, "best", "friction along the slip"),
+    ("ode", "bounce-with-spin", 1e-4, "best", "contacts that do not yield"),
+    ("rapier", "pushed-box", 1e-3, "best", "friction of all points at once, else best"),
+    ("rapier", "coin-in-a-circle", 1e-4, "best", "stiff contacts, one substep, else best"),
+    ("rapier", "bounce-with-spin", 1e-4, "as shipped", "contacts as they touch"),
     ("mujoco", "billiard-swerve", 1e-4, "contacts as stiff as the step allows", "stiff contacts, friction that yields"),
     ("drake", "tippe-top", 1e-3, "best", "TAMSI"),
     ("pybullet", "incline", 1e-3, "as shipped", "no damping"),

@@ -24,8 +24,8 @@ def run(task: Task) -> Task:
     setting = task["setting"]
     world = ode.OdeWorld()
     world.setGravity(*task["gravity"])
-    if "erp" in setting:
-        world.setErp(setting["erp"])
+    for name, value in setting.get("world", {}).items():
+        getattr(world, f"set{name}")(value)
     ground, table, hinge = _support(core, ode, world, task)
     made = [_body(core, ode, world, body) for body in task["bodies"]]
     pairs = [(made[0], (ground, table), task["friction"])]
@@ -46,7 +46,7 @@ def run(task: Task) -> Task:
                     contact.setGeom(met.getContactGeom(i))
                     contact.setSurface(surface)
                     if along:
-                        _turn(contact, body, under, force)
+                        _turn(contact, surface, body, under, force)
                     joint = ode.OdeContactJoint(world, group, contact)
                     # Which of the two the normal points to is that of the entry.
                     joint.attach(body, under) if under is not None else joint.attachBody(body, 0)
@@ -65,8 +65,8 @@ def run(task: Task) -> Task:
     return march(task, f"ODE (Panda3D {core.PandaSystem.getVersionString()})", step, read, turn)
 
 
-def _turn(contact: Any, body: Any, under: Any, force: Any) -> None:
-    """Turn the pyramid of friction so that the body slips along one of its sides, or is pushed along it."""
+def _turn(contact: Any, surface: Any, body: Any, under: Any, force: Any) -> None:
+    """Turn the pyramid of friction to where the body slips, or is pushed; what slips has no friction across."""
     met = contact.getGeom()
     place, normal = met.getPos(), met.getNormal()
     slip = body.getPointVel(place) - (under.getPointVel(place) if under is not None else normal.zero())
@@ -74,12 +74,17 @@ def _turn(contact: Any, body: Any, under: Any, force: Any) -> None:
     along = next(way for way in ways if way.length() > _STILL)
     along.normalize()
     contact.setFdir1(along)
+    # Across, it would hold back each turn of the slip with all of its strength.
+    surface.setMu2(0.0 if slip.length() > _STILL else surface.getMu())
+    contact.setSurface(surface)
 
 
 def _surface(ode: Any, friction: float, restitution: float, along: bool) -> Any:
     """Return how two surfaces meet: with a pyramid of friction, which is what it has."""
     surface = ode.OdeSurfaceParameters()
-    mode = ode.OdeSurfaceParameters.MFContactApprox1 | (along and ode.OdeSurfaceParameters.MFContactFDir1)
+    mode = ode.OdeSurfaceParameters.MFContactApprox1
+    if along:
+        mode |= ode.OdeSurfaceParameters.MFContactFDir1 | ode.OdeSurfaceParameters.MFContactMu2
     surface.setMu(friction)
     if restitution:
         mode |= ode.OdeSurfaceParameters.MFContactBounce
