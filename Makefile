@@ -8,7 +8,8 @@ PYTHON =
 PYTHONS = $(PYTHON) python3 python3.13 python3.12 python3.11 python3.14 python
 
 BIN = .venv/bin
-PLAIN = NO_COLOR=1 PY_COLORS=0 MPLBACKEND=Agg
+# What is compiled once is kept for the many processes that the tests start, whatever your shell says of bytecode.
+PLAIN = PYTHONDONTWRITEBYTECODE= NO_COLOR=1 PY_COLORS=0 MPLBACKEND=Agg
 # The build environment is pinned too: older pips read the first name for it, newer ones the second.
 PINNED = PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INPUT=1
 # Two workers; `loadscope` keeps the blocks of one document on one worker, in their order.
