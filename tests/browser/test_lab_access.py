@@ -276,7 +276,7 @@ def test_forced_colours_keep_every_state(visitor: Visitor) -> None:
 
 def test_forced_colours_leave_the_letters_under_accents(visitor: Visitor) -> None:
     page = visitor.open("#/tour/4", drawn=False, cards=False, size=LAPTOP, forced_colors="active")
-    accents = page.locator("p .katex .accent")
+    accents = page.locator("p .katex-accent")
     expect(accents).to_have_count(3)  # the rate of r, and the normal twice
     come_to_rest(page)
     boxes = [accents.nth(i).bounding_box() for i in range(3)]
