@@ -320,7 +320,7 @@ def has_duals(thing: Any) -> bool:
     >>> has_duals((1.0, 2.0)), has_duals((1.0, Dual(2.0, (1.0,))))
     (False, True)
     """
-    kind = type(thing)
+    kind: Any = type(thing)
     if kind is float:  # most are
         return False
     if kind is Dual:
