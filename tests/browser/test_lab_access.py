@@ -274,6 +274,23 @@ def test_forced_colours_keep_every_state(visitor: Visitor) -> None:
     assert violations(page) == []
 
 
+def test_forced_colours_leave_the_letters_under_accents(visitor: Visitor) -> None:
+    page = visitor.open("#/tour/4", drawn=False, cards=False, size=LAPTOP, forced_colors="active")
+    accents = page.locator("p .katex-accent")
+    expect(accents).to_have_count(3)  # the rate of r, and the normal twice
+    come_to_rest(page)
+    boxes = [accents.nth(i).bounding_box() for i in range(3)]
+
+    def ink() -> list[float]:
+        pictures = [Stage(page, page).picture(box).sum(axis=2) for box in boxes]
+        return [np.abs(one - np.median(one)).mean() / np.ptp(one) for one in pictures]
+
+    forced = ink()
+    page.emulate_media(forced_colors="none")
+    come_to_rest(page)
+    assert forced == pytest.approx(ink(), rel=0.3)
+
+
 def test_the_motion_is_told_in_words_at_a_pace_that_one_can_set(visitor: Visitor) -> None:
     bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", drawn=False, cards=False))
     page = bench.page

@@ -39,6 +39,15 @@ TOO_WIDE = """() => {
     return [root, cut.map((table) => table.className)]
 }"""
 
+# Buttons of the viewer's bar that lie over each other.
+OVERLAPPING = """() => {
+    const shown = [...document.querySelectorAll('.tr-row :is(button, select)')].filter((one) => one.checkVisibility())
+    const boxes = shown.map((one) => [one.getAttribute('aria-label') ?? one.textContent, one.getBoundingClientRect()])
+    const over = ([, a], [, b]) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5
+        && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1.5
+    return boxes.flatMap((one, i) => boxes.slice(i + 1).filter((two) => over(one, two)).map(([name]) => [one[0], name]))
+}"""
+
 
 @pytest.fixture(scope="module")
 def kept(staying: Visitor) -> Page:
@@ -112,11 +121,14 @@ FITTED = [name for name in PAGES if name not in ("bench-bowl", "bench-coin", "to
 
 
 @pytest.mark.parametrize("name", FITTED)
-def test_nothing_must_be_scrolled_to_the_side_and_tables_keep_their_last_column(name: str, kept: Page) -> None:
+def test_nothing_must_be_scrolled_to_the_side_tables_keep_their_last_column_and_buttons_their_places(
+    name: str, kept: Page
+) -> None:
     found = []
     for size in NARROW:
         at(kept, PAGES[name], size)
         root, cut = kept.evaluate(TOO_WIDE)
-        if root > 0 or cut:
-            found.append(f"{size}: {root} pixels to the side, tables {cut}")
+        over = kept.evaluate(OVERLAPPING)
+        if root > 0 or cut or over:
+            found.append(f"{size}: {root} pixels to the side, tables {cut}, buttons over each other {over}")
     assert not found, "\n".join(found)

@@ -8,6 +8,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from .launching import PATIENCE, PHONE
+from .test_lab_access import come_to_rest, settle
+from .test_lab_fit import FOUR_TIMES, TOO_WIDE
 from .visiting import PAGES, Visitor
 
 # What of the page has vowels without marks: what is in no catalogue. Formulas, files, citations and units are no words.
@@ -27,6 +29,26 @@ PLAIN = """() => {
         for (const name of ['title', 'aria-label', 'aria-valuetext', 'placeholder', 'alt'])
             if (!element.closest(ours) && plain((element.getAttribute(name) ?? '').replace(/\\\\[a-z]+/g, '')))
                 found.push(element.getAttribute(name))
+    return found
+}"""
+
+
+# Words of tables that begin on one line and end on another.
+BROKEN = """() => {
+    const lines = (range) => new Set([...range.getClientRects()].map(({bottom}) => Math.round(bottom))).size
+    const found = []
+    for (const cell of document.querySelectorAll('main table :is(th, td)')) {
+        const walk = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT)
+        for (let text = walk.nextNode(); text; text = walk.nextNode()) {
+            if (text.parentElement.closest('.sr-only, math, .katex')) continue
+            for (const word of text.data.matchAll(/[\\p{L}\\p{N}.,]{2,}/gu)) {
+                const range = document.createRange()
+                range.setStart(text, word.index)
+                range.setEnd(text, word.index + word[0].length)
+                if (lines(range) > 1) found.push(word[0])
+            }
+        }
+    }
     return found
 }"""
 
@@ -115,6 +137,19 @@ def test_the_header_and_the_tabs_fit_at_every_width_in_long_words(visitor: Visit
         for row in (".head", "[role=tablist]"):
             wide = page.locator(row).first.evaluate("row => row.scrollWidth - row.clientWidth")
             assert wide <= 1, (row, width)
+
+
+@pytest.mark.parametrize("route", ["#/compare", "#/tour/4", "#/tour/7", "#/fields"])
+def test_a_table_on_a_telephone_breaks_no_long_word_and_keeps_its_last_column(visitor: Visitor, route: str) -> None:
+    page = visitor.open(f"?lang=de{route}", drawn=False, cards=False)
+    settle(page)
+    expect(page.locator("main table tbody tr").first).to_be_visible(timeout=SLOW)
+    page.set_viewport_size(PHONE)
+    come_to_rest(page)
+    assert page.evaluate(BROKEN) == []
+    assert page.evaluate(TOO_WIDE) == [0, []]
+    page.set_viewport_size(FOUR_TIMES)
+    assert page.evaluate(TOO_WIDE) == [0, []]
 
 
 def test_an_arrow_bears_its_symbol_in_any_language_and_a_point_of_the_compass_its_letter(visitor: Visitor) -> None:

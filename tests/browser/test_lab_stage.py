@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,30 @@ def test_the_ball_is_taken_with_the_pointer_that_turns_the_view_and_put_down(ben
 def test_the_ball_is_thrown_as_the_hand_moves(bench: Bench, pause: int) -> None:
     """To the left on the screen, down the first axis, at about the speed of the hand."""
     bench.page.evaluate(FLING, [*bench.stage.ball(), -60, pause])
+
+    def thrown() -> None:
+        place, velocity = start(bench)
+        assert place[0] < 0.19
+        assert velocity[0] < -0.05
+        assert abs(velocity[1]) < 0.1 * abs(velocity[0])
+
+    eventually(bench.page, thrown)
+
+
+def test_the_ball_is_thrown_on_a_slow_machine(bench: Bench) -> None:
+    """A hand moves on, and lets go, while the page is still busy with where it was."""
+    browser = bench.page.context.new_cdp_session(bench.page)
+    browser.send("Emulation.setCPUThrottlingRate", {"rate": 6})
+    (x, y), now = bench.stage.ball(), time.time()
+
+    def tell(kind: str, step: int) -> None:
+        at = {"x": x - 8 * step, "y": y, "timestamp": now + 0.016 * step}
+        browser.send("Input.dispatchMouseEvent", {"type": kind, "button": "left", "buttons": 1, "clickCount": 1, **at})
+
+    tell("mousePressed", 0)
+    for step in range(1, 13):
+        tell("mouseMoved", step)
+    tell("mouseReleased", 13)
 
     def thrown() -> None:
         place, velocity = start(bench)

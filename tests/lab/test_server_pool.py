@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import os
 import signal
@@ -15,7 +16,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from tests.lab.working import begun, work
+from tests.lab.working import begun, work, work_for
 
 from trundle.lab import Settings
 from trundle.lab.errors import RefusedError
@@ -222,3 +223,34 @@ def test_stopping_ends_what_runs_and_tells_who_waits(tmp_path: Path) -> None:
             await until(lambda: all(gone(pid) for i in range(2) for pid in begun(tmp_path / f"{i}")))
 
     asyncio.run(asyncio.wait_for(whole(), 90))
+
+
+def test_who_asks_again_meets_the_process_that_has_traced_the_law() -> None:
+    async def test(lanes: Lanes) -> None:
+        first = await lanes.run(None, False, os.getpid)
+        assert {await lanes.run(None, slow, os.getpid) for slow in (False, True) * 5} == {first}
+        busy = quick(lanes, work_for, 0.5)
+        await asyncio.sleep(0.1)
+        other = await lanes.run(None, True, os.getpid)
+        assert other != first
+        assert await busy == first
+        assert await lanes.run(None, False, os.getpid) == other  # it was given work last
+
+    run(test)
+
+
+def test_a_process_that_has_to_begin_anew_comes_last() -> None:
+    async def test(lanes: Lanes) -> None:
+        with pytest.raises(RefusedError):
+            await lanes.run(None, False, os._exit, 3)
+        one = await lanes.run(None, False, os.getpid)
+        assert {await lanes.run(None, False, os.getpid) for _ in range(5)} == {one}
+
+    run(test)
+
+
+def test_what_a_process_has_loaded_is_never_looked_through_for_garbage() -> None:
+    async def test(lanes: Lanes) -> None:
+        assert await lanes.run(None, False, gc.get_freeze_count) > 50_000
+
+    run(test)

@@ -18,3 +18,9 @@ def work(path: str, seconds: float, answer: object = None) -> object:
 def begun(path: Path) -> list[int]:
     """The processes that began this work, one after the other."""
     return [int(line) for line in path.read_text().split()] if path.exists() else []
+
+
+def work_for(seconds: float) -> int:
+    """Work, and say which process did."""
+    time.sleep(seconds)
+    return os.getpid()

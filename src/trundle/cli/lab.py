@@ -55,6 +55,7 @@ def lab(
     page = "" if scenario is None else page_of(scenario)
 
     def told(address: str, taken: int) -> None:
+        gc.freeze()  # what is loaded stays: a pass over it would let a visitor wait for a tenth of a second
         if port is None and taken != DEFAULT_PORT:
             screen.note(f"trundle: port {DEFAULT_PORT} is taken, so this is another")
         screen.out(f"The lab is at {address} (Ctrl-C ends it)")

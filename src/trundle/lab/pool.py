@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 import multiprocessing
 import signal
@@ -46,24 +47,24 @@ class Processes:
     def __init__(self, count: int, settings: Settings) -> None:
         self.count, self.settings = count, settings
         self._lock = threading.Lock()
-        self._pool: ProcessPool | None = None
-        self._context: Any = None
+        self._workers: list[_Worker] = []
+        self._turns = itertools.count()
 
     def start(self) -> None:
-        """Start the processes; returns when they are there, which takes a second or two."""
+        """Start the processes that are not there; returns when they are, which takes a second or two."""
         with self._lock:
-            if self._pool is None or not self._pool.active:
-                if self._pool is not None:
-                    _log.warning("a process that waited for work was killed: fresh ones take the place of all")
-                    threading.Thread(target=_end, args=(self._pool, self._context), daemon=True).start()
-                self._pool, self._context = _new_pool(self.count)
+            whole = [worker for worker in self._workers if worker.pool.active]
+            killed = [worker for worker in self._workers if worker not in whole]
+            if killed:
+                _log.warning("a process that waited for work was killed: a fresh one takes its place")
+                threading.Thread(target=_end, args=(killed,), daemon=True).start()
+            self._workers = whole + [_Worker() for _ in range(self.count - len(whole))]
 
     def stop(self) -> None:
         """End the processes, whatever they do."""
         with self._lock:
-            pool, self._pool = self._pool, None
-        if pool is not None:
-            _end(pool, self._context)
+            workers, self._workers = self._workers, []
+        _end(workers)
 
     def computation(
         self, function: Callable[..., Any], arguments: tuple[Any, ...], within: float, most: float | None = None
@@ -72,14 +73,50 @@ class Processes:
         return Computation(self, self.settings.wall_time if most is None else most, function, arguments, within)
 
     async def schedule(self, most: float, *work: Any) -> ProcessFuture:
-        """Hand work to the pool, to a new one where there is none, or an idle process of it was killed."""
-        if self._pool is None or not self._pool.active:
+        """Hand work to a process, to a new one where there is none, or the one that waited for it was killed."""
+        worker = self._next()
+        if worker is None or not worker.pool.active:
             await asyncio.to_thread(self.start)
-        pool: Any = self._pool
+            worker = self._next()
+        if worker is None:
+            raise BrokenProcessPool("the processes were ended")
+        return worker.schedule(next(self._turns), most, *work)
+
+    def _next(self) -> _Worker | None:
+        """Return the idle process that worked last: it has traced the law that is asked about again."""
+        return min(self._workers, key=_Worker.rank, default=None)
+
+
+class _Worker:
+    """One process, and its successor where it dies: in a pool of its own, since a pool gives work to any of its own."""
+
+    def __init__(self) -> None:
+        from .warm import begin_worker
+
+        self.context: Any = _Context()
+        self.pool = ProcessPool(1, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, context=self.context)
+        self._given: list[ProcessFuture] = []  # what it has not done, and what it did last
+        self._turn = 0
+        if not self.pool.active:  # asking starts it
+            raise RuntimeError("no process could be started")
+
+    def schedule(self, turn: int, most: float, *work: Any) -> ProcessFuture:
+        """Let the process work when it has done what it was given before."""
         try:
-            return pool.schedule(computed, work, timeout=most)
+            future: ProcessFuture = self.pool.schedule(computed, work, timeout=most)
         except RuntimeError as error:
             raise BrokenProcessPool(*error.args) from None
+        self._turn, self._given = turn, [*(one for one in self._given if not one.done()), future]
+        return future
+
+    def rank(self) -> tuple[int, bool, int]:
+        """Return what is least for who is to work next: first how much waits, last how long ago it was given work."""
+        return sum(not one.done() for one in self._given), any(map(_ended, self._given)), -self._turn
+
+
+def _ended(future: ProcessFuture) -> bool:
+    """Whether a process ended with its work: its successor has still to begin."""
+    return future.done() and (future.cancelled() or isinstance(future.exception(), ProcessExpired | TimeoutError))
 
 
 class Computation:
@@ -155,21 +192,12 @@ def preload() -> None:
     _Context()
 
 
-def _new_pool(workers: int) -> tuple[ProcessPool, _Context]:
-    from .warm import begin_worker
-
-    context: Any = _Context()
-    pool = ProcessPool(workers, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, context=context)
-    if not pool.active:  # asking starts it
-        raise RuntimeError("no process could be started")
-    return pool, context
-
-
-def _end(pool: ProcessPool, context: _Context) -> None:
-    """End a pool; its processes first, since one that is still starting would complain that the pool has gone."""
-    with suppress(RuntimeError):
-        pool.stop()
-        for process in context.made:
+def _end(workers: list[_Worker]) -> None:
+    """End workers; their processes first, since one that is still starting would complain that its pool has gone."""
+    for worker in workers:
+        worker.pool.stop()
+        for process in worker.context.made:
             with suppress(OSError, ValueError, AttributeError):
                 process.kill()
-        pool.join()
+    for worker in workers:
+        worker.pool.join()

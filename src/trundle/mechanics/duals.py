@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any
 
 from .scalars import Scalar, is_number, is_zero, less, namespace
@@ -319,11 +320,20 @@ def has_duals(thing: Any) -> bool:
     >>> has_duals((1.0, 2.0)), has_duals((1.0, Dual(2.0, (1.0,))))
     (False, True)
     """
+    kind: Any = type(thing)
+    if kind is float:  # most are
+        return False
+    if kind is Dual:
+        return True
     if isinstance(thing, tuple):
         return any(map(has_duals, thing))
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return any(has_duals(getattr(thing, field.name)) for field in fields(thing))
-    return isinstance(thing, Dual)
+    return any(has_duals(getattr(thing, name)) for name in _names(kind))
+
+
+@cache
+def _names(kind: type) -> tuple[str, ...]:
+    """Return the names of what a structure is made of: none where it is a number, or a class."""
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
 
 
 def converted(x: Any, number: Callable[[Any], Any]) -> Any:

@@ -68,7 +68,7 @@ export const TEXTS: readonly StepText[] = [
     task: 'Change the table’s rate, or drag the ball to another start. What stays the same?',
     formulas: [
       '\\dot{\\mathbf{r}} = \\frac{\\omega}{1 + ma^2/I}\\;\\hat n\\times(\\mathbf{r} - \\mathbf{r}_0)',
-      '\\kappa = \\tfrac27\\,\\omega \\quad\\text{where } I = \\tfrac25\\,ma^2',
+      '\\kappa = \\tfrac27\\,\\omega \\qquad (I = \\tfrac25\\,ma^2)',
     ],
     question: 'A hollow ball has its mass further out. Does it go round faster or slower than a solid one?',
     answer: [
