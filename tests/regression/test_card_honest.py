@@ -463,6 +463,28 @@ def test_a_rounding_of_a_lean_of_a_millionth_is_no_fault(x: float, spun: float) 
     assert run.events[-1].kind == "edge"
 
 
+@pytest.mark.parametrize(("friction", "faster"), [(0.243451, 1.0), (0.3, 0.8), (0.5, 1.2)])
+def test_a_rounding_of_the_last_lean_is_no_jump(friction: float, faster: float) -> None:
+    # A disc that falls onto its face on a mound: at the end a rounding of its orientation moves the contact by 1e-11 m.
+    run = passes(
+        body={"kind": "disc", "radius": 0.0745393, "mass": 0.242908, "centre": [0.00304138, -0.00438588, 0.0139941]},
+        support={
+            "kind": "paraboloid",
+            "radius": -0.851576,
+            "rim": 0.165619,
+            "friction": friction,
+            "kinetic_friction": 0.0699557,
+            "motion": {"kind": "tilt", "angle": "45 deg"},
+        },
+        start={
+            "position": [0.0, 0.00594803],
+            "angular_velocity": [1.68137 * faster, 9.55798 * faster, -0.185644 * faster],
+        },
+        run={"duration": 2, "every": 0.02},
+    )
+    assert run.events[-1].kind == "edge"
+
+
 # --- rest ---------------------------------------------------------------------------------------------------------
 
 

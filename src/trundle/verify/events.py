@@ -25,7 +25,7 @@ from ..solve.contact_state import ContactState
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from ..solve.transitions import JOLT
 from .acting import acting, cross
-from .bounds import A_STEP, SOLVER, Array, largest, sizes_of
+from .bounds import A_STEP, SOLVER, Array, blur_of, largest, sizes_of
 from .card import CardFigure
 from .each_sample import EachSample, Shares, worst_of
 from .friction import holding, normal_and_friction
@@ -172,9 +172,10 @@ class AtEvents:
         return {name: turn / max(self._sizes[name], 1e-300) for name, turn in turns.items()}
 
     def _in_a_moment(self, at: Samples, span: float = 0.0) -> dict[str, float]:
-        """Return by what shares V, Ω and an axle's rate change while the clock, or the place, is not told apart.
+        """Return by what shares the state changes while the clock, the place, or the lean is not told apart.
 
-        Where the support becomes as hollow as the body is round they change a million times as fast as the place.
+        Where the support becomes as hollow as the body is round V and Ω change a million times as fast as the place, and
+        where a body all but lies flat the place as fast as the lean.
         """
         F, K, J, gyroscopic = (part[0] for part in acting(self.system, at))
         R, V, Omega, sizes = at.contact_force[0], at.velocity[0], at.angular_velocity[0], self._sizes
@@ -186,7 +187,10 @@ class AtEvents:
         if motion.free:
             lever = _row(at.support(self.system).lever(Vector.of(at.contact)))
             rates["support"], sizes = lever @ R / float(motion.inertia), {**sizes, "support": self._own}
-        return {name: float(np.linalg.norm(rate)) * moment / max(sizes[name], 1e-300) for name, rate in rates.items()}
+        changed = {name: float(np.linalg.norm(rate)) * moment for name, rate in rates.items()}
+        changed["position"] = blur = blur_of(self.system, at)
+        changed["velocity"] += blur * float(np.linalg.norm(Omega))
+        return {name: change / max(sizes[name], 1e-300) for name, change in changed.items()}
 
     def _same(
         self,
