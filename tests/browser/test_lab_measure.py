@@ -13,7 +13,7 @@ from trundle.lab.links import encode
 
 from .axe import violations
 from .bench import decoded, number
-from .launching import LAPTOP, PATIENCE, PHONE
+from .launching import LAPTOP, PATIENCE, PHONE, SMALL
 from .visiting import Visitor
 
 
@@ -182,3 +182,79 @@ def test_it_fits_and_axe_finds_nothing(size: dict[str, int], visitor: Visitor) -
     fit(page)
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
     assert not violations(page)
+
+
+def press(page: Page, name: str) -> None:
+    """Go to a control by Tab, each stop of which is seen, and press Enter there."""
+    goal = page.get_by_role("button", name=name, exact=True)
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        assert page.evaluate(SEEN), page.evaluate("document.activeElement.outerHTML.slice(0, 200)")
+        if goal.evaluate("goal => goal === document.activeElement"):
+            page.keyboard.press("Enter")
+            return
+    pytest.fail(f"60 stops, and none is {name!r}")
+
+
+# A ring about what has the focus, or about the label that stands for it, within the window.
+SEEN = """() => {
+    const at = document.activeElement
+    if (at === document.body) return false
+    const about = [at, at.closest('label')].filter(part => part && part.getBoundingClientRect().width > 2)
+    return about.some(part => {
+        const {top, bottom} = part.getBoundingClientRect()
+        const {outlineStyle, outlineWidth} = getComputedStyle(part)
+        return bottom > 0 && top < innerHeight && outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2
+    })
+}"""
+
+
+def test_by_keys_alone(visitor: Visitor) -> None:
+    """An example is chosen, its fit stopped and begun again, and what was found goes to the bench: no focus is lost."""
+    page = visitor.open("#/measure", size=LAPTOP, drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    press(page, "A ball on a ramp")
+    expect(page.get_by_role("status").filter(has_text="180 rows")).to_be_visible()
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_focused()
+    expect(page.get_by_test_id("fit")).to_be_enabled(timeout=4 * PATIENCE)
+    page.route("**/api/fit", lambda _: None)
+    press(page, "Fit")
+    expect(page.get_by_test_id("fit-stop")).to_be_focused()
+    page.keyboard.press("Space")
+    expect(page.get_by_test_id("fit")).to_be_focused()
+    page.unroute_all()
+    page.keyboard.press("Space")
+    expect(page.get_by_test_id("verdict")).to_be_visible(timeout=4 * PATIENCE)
+    found_there = page.get_by_role("status", name="What was found")
+    expect(found_there).to_be_focused()
+    expect(found_there).to_contain_text("good fit")
+    assert page.evaluate(SEEN)
+    value, _ = found(page, "Body: Inertia ratio k")
+    press(page, "Open the fitted scenario on the bench")
+    expect(page.get_by_role("main")).to_be_focused()
+    expect(page.get_by_label("Inertia ratio k").first).to_have_value(re.compile(f"^{value:.2f}"))
+
+
+def test_an_answer_by_keys_keeps_the_focus(visitor: Visitor) -> None:
+    page = visitor.open("#/measure", drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    t = np.arange(60) / 30
+    take(page, "ball.csv", table("t (s);x;y", np.column_stack([t, 10 * t, 0 * t])))
+    expect(page.get_by_test_id("question").get_by_role("button", name="m", exact=True)).to_be_focused()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_test_id("said")).to_contain_text("60 rows")
+    expect(page.get_by_text("How the file is read")).to_be_focused()
+
+
+@pytest.mark.parametrize(("size", "next_one"), [(LAPTOP, "Redo"), (SMALL, "Steel ball nudged on a level turntable")])
+def test_a_last_step_that_is_undone_keeps_the_focus(size: dict[str, int], next_one: str, visitor: Visitor) -> None:
+    page = visitor.open("#/bench?name=level-turntable-nudged", size=size, drawn=False, cards=False)
+    page.get_by_role("slider", name="Rate").first.focus()
+    page.keyboard.press("ArrowRight")
+    undo = page.get_by_role("button", name="Undo")
+    expect(undo).to_be_enabled()
+    undo.focus()
+    page.keyboard.press("Enter")
+    expect(undo).to_be_disabled()
+    expect(page.get_by_role("button", name=next_one)).to_be_focused()

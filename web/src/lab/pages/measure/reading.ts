@@ -1,6 +1,7 @@
 /** What a file does not say of itself: asked when it has to be known, and to be changed at any time. */
 import { shownDigits, typedDigits } from '../../../languages/translate'
 import type { Question } from '../../api'
+import { handOver } from '../../../viewer/elements'
 import { fill, h, uniqueId } from '../../dom'
 import { button } from '../parts/controls'
 
@@ -85,7 +86,10 @@ export function createReading(changed: (how: How) => void): Reading {
     changed(how)
   }
 
+  const about = h('summary', {}, 'How the file is read')
+
   function ask(question: Question | null): void {
+    if (!question) handOver(asked, about)
     asked.hidden = question === null
     if (!question) return
     const { key, rule, received, choices } = question
@@ -120,7 +124,7 @@ export function createReading(changed: (how: How) => void): Reading {
       'div',
       { class: 'measure-reading' },
       asked,
-      h('details', {}, h('summary', {}, 'How the file is read'), h('div', { class: 'measure-fields' }, rows)),
+      h('details', {}, about, h('div', { class: 'measure-fields' }, rows)),
     ),
     ask,
     set(next) {

@@ -1,5 +1,6 @@
 /** Step 6: guess where the ball goes on a leaning, turning table; then see. */
 import type { Scene } from '../../../viewer/scene'
+import { handOver } from '../../../viewer/elements'
 import { fill, h } from '../../dom'
 import { button } from '../parts/controls'
 import { finding, pathOf } from '../parts/measure'
@@ -105,6 +106,7 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, work
     picks.hidden = false
     letGo.hidden = false
     letGo.disabled = true
+    handOver(again, picks.querySelector('button')!)
     again.hidden = true
     fill(remark)
     numbers.set([])
