@@ -107,7 +107,12 @@ export const measure: Page = {
     const halt = button('Stop', () => fitting.stop(), 'plain', 'fit-stop')
     let choosing: object | null = null // a scenario that is on its way
     let busy = false
-    const verdict = h('div', { class: 'measure-verdicts', role: 'status', 'aria-label': 'What was found', tabindex: -1 })
+    const verdict = h('div', {
+      class: 'measure-verdicts',
+      role: 'status',
+      'aria-label': 'What was found',
+      tabindex: -1,
+    })
     const results = h('div', { class: 'measure-results' })
     const bench = button('Open the fitted scenario on the bench', () => void openBench(), 'plain', 'fit-bench')
     const file = button('Save fit.toml', () => fitted && save(new Blob([fitted.commented]), 'fit.toml'), 'plain')

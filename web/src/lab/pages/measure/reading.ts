@@ -1,7 +1,7 @@
 /** What a file does not say of itself: asked when it has to be known, and to be changed at any time. */
 import { shownDigits, typedDigits } from '../../../languages/translate'
-import type { Question } from '../../api'
 import { handOver } from '../../../viewer/elements'
+import type { Question } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { button } from '../parts/controls'
 

@@ -1,6 +1,7 @@
 /** Step 6: guess where the ball goes on a leaning, turning table; then see. */
-import type { Scene } from '../../../viewer/scene'
+
 import { handOver } from '../../../viewer/elements'
+import type { Scene } from '../../../viewer/scene'
 import { fill, h } from '../../dom'
 import { button } from '../parts/controls'
 import { finding, pathOf } from '../parts/measure'
