@@ -22,7 +22,7 @@ import { button } from '../parts/controls'
 import { createStage, playUnlessCalm, told } from '../parts/stage'
 import { createFilm, isFilm } from './film'
 import { createPlot } from './plot'
-import { createReading, type How } from './reading'
+import { byLabels, createReading, type How } from './reading'
 import { marked, report } from './report'
 import { createShowing } from './showing'
 
@@ -156,7 +156,7 @@ export const measure: Page = {
       fill(
         said,
         h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
-        answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
+        answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(byLabels(sentence)))),
       )
       ready()
       plot.measured(answer)

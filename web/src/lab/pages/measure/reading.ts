@@ -1,5 +1,5 @@
 /** What a file does not say of itself: asked when it has to be known, and to be changed at any time. */
-import { shownDigits, typedDigits } from '../../../languages/translate'
+import { shownDigits, t, typedDigits } from '../../../languages/translate'
 import { handOver } from '../../../viewer/elements'
 import type { Question } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
@@ -60,6 +60,14 @@ const FIELDS: readonly Asked[] = [
 ]
 
 const digitsOf = (key: string) => FIELDS.some((one) => one.key === key && one.digits)
+
+/** What the package says of a file, with the names of this page for its options: “Unit of angles” for --angles. */
+export function byLabels(sentence: string): string {
+  return sentence.replace(/--([a-z]+)/g, (option, name: string) => {
+    const field = FIELDS.find(({ key }) => key === (name === 'unit' ? 'units' : name))
+    return field ? `“${t(field.label)}”` : option
+  })
+}
 
 export function createReading(changed: (how: How) => void): Reading {
   let how: How = {}
