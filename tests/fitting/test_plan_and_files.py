@@ -129,9 +129,7 @@ def test_a_figure_and_a_page_of_its_own(fitted: tr.Fit, tmp_path) -> None:
     text = fitted.save_html(tmp_path / "fit.html").read_text(encoding="utf-8")
     assert "data:image/png;base64," in text
     assert "<script" not in text
-    plain = html.unescape(text)
-    for told in (fitted.to_toml(), *fitted.remarks):
-        assert plain.count(told.rstrip("\n")) == 1, told
+    assert html.unescape(text).count(fitted.to_toml().rstrip()) == 1
 
 
 def test_emcee_draws_what_least_squares_say() -> None:
