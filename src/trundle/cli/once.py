@@ -14,7 +14,7 @@ class Once(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read what was typed."""
-        *_, order = self.make_parser(ctx).parse_args(args=list(args))
+        order: list[Any] = self.make_parser(ctx).parse_args(args=list(args))[2]
         for option in order:
             single = option.param_type_name == "option" and not (option.multiple or option.is_flag or option.count)
             if single and order.count(option) > 1:
