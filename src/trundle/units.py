@@ -151,6 +151,8 @@ def _example(kind: str) -> str:
 def _with_units(kind: str, digits: str) -> str:
     """Say how a number that came as text without a unit may be written."""
     unit, example = UNITS[kind]
+    if not float(digits) > 0:  # which may be refused with a unit, too
+        return f"Write its unit behind it, as in '{example}'."
     offered = dict.fromkeys([unit, example.partition(" ")[2]])
     quoted = ", ".join(f"'{digits} {one}'" for one in offered)
     return f"Write {quoted} or, in a file or in Python, the bare number {digits}, which is in {unit}."

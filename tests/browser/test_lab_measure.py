@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
+import zipfile
+from io import BytesIO
 
 import numpy as np
 import pytest
 from playwright.sync_api import Page, Route, expect
+from tests.fitting.test_gyroscope import inside
+from tests.tracks.examples import EXAMPLES, Example
 
 import trundle as tr
 from trundle.lab.links import encode
@@ -96,6 +100,77 @@ def test_what_the_file_does_not_say_is_asked(visitor: Visitor) -> None:
     expect(page.get_by_test_id("said")).to_contain_text("a pixel of 0.5 mm")
 
 
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda one: one.id)
+def test_each_format_is_read_or_asked_about(example: Example, page_of_files: Page, staying: Visitor) -> None:
+    """A file of each format: what has to be known is asked for in the words of the page, until it is read."""
+    page = page_of_files
+    staying.watch.allow("status of 422")
+    asked, wrong = page.get_by_test_id("question"), page.get_by_test_id("wrong")
+    page.get_by_test_id("file").set_input_files(
+        {"name": example.file, "mimeType": "", "buffer": example.content}, timeout=PATIENCE
+    )
+    units = example.options.get("units", {})
+    known = example.options | (units if isinstance(units, dict) else {"length": units})
+    answers = {"Which one?": "track", "unit are the places": "length", "a pixel": "pixel", "frames were": "rate"}
+    for _ in range(5):
+        told = asked.or_(wrong).or_(page.get_by_test_id("said").locator("p"))
+        expect(told.filter(visible=True).first).to_be_visible()
+        if not asked.is_visible():
+            break
+        question = asked.locator(".measure-asked").inner_text()
+        answer = str(known[next(key for words, key in answers.items() if words in question)])
+        button = asked.get_by_role("button", name=answer, exact=True)
+        if button.count():
+            button.click()
+        else:
+            asked.get_by_role("textbox").fill(answer)
+            asked.get_by_role("textbox").press("Enter")
+        expect(asked.get_by_text(question)).to_be_hidden()
+    if example.format == "NetCDF":  # along axes that turn
+        expect(wrong).to_contain_text("along axes that do not turn")
+        return
+    expect(wrong).to_be_hidden()
+    rows = len(next(iter(example.truth.values())))
+    expect(page.get_by_test_id("said")).to_contain_text(f"{rows} rows")
+    expect(page.get_by_test_id("said")).not_to_contain_text("--")
+    expect(page.get_by_test_id("fit")).to_be_enabled()
+
+
+@pytest.fixture(scope="module")
+def page_of_files(staying: Visitor) -> Page:
+    page = staying.open("#/measure", drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    return page
+
+
+def test_a_gyroscope_inside_a_ball_shows_its_inertia(visitor: Visitor) -> None:
+    """As a telephone exports it; how the ball spins is no more known than how the telephone lies in it."""
+    tables = {
+        "body": {"kind": "sphere", "radius": "20 mm", "mass": "90 g", "inertia_ratio": 0.5},
+        "support": {"kind": "plane", "motion": {"kind": "spin", "rate": "3.487 rad/s"}},
+        "start": {"position": [0.1, 0.0]},
+        "run": {"duration": "6 s", "every": "20 ms"},
+    }
+    page = visitor.open(f"#/bench?s={encode(tables)}", drawn=False, cards=False)
+    expect(page.locator('[data-bodies="1"]')).to_be_attached()
+    page.get_by_role("link", name="Measure").click()
+    columns = np.column_stack(list(inside(3.487).values()))
+    heading = ",".join(['"Time (s)"', *(f'"Gyroscope {axis} (rad/s)"' for axis in "xyz")])
+    packed = BytesIO()
+    with zipfile.ZipFile(packed, "w") as file:
+        file.writestr("Gyroscope.csv", table(heading, columns).replace(";", ","))
+    given = {"name": "rolling.zip", "mimeType": "application/zip", "buffer": packed.getvalue()}
+    page.get_by_test_id("file").set_input_files(given)
+    expect(page.get_by_test_id("said")).to_contain_text("100 samples a second")
+    page.get_by_role("checkbox", name="Body: Inertia ratio k").check()
+    fit(page)
+    expect(page.get_by_test_id("verdict")).to_contain_text("good fit")
+    for name, truth in (("Body: Inertia ratio k", 0.4), ("Start: Spin about the normal", 2.0)):
+        value, error = found(page, name)
+        assert abs(value - truth) < 4 * error < 0.05
+    assert not violations(page, ".measure")
+
+
 def test_a_ball_of_ones_own_on_the_scenario_of_the_bench(visitor: Visitor) -> None:
     """Down an incline by hand: x = 5/7 g sin(tilt) t²/2."""
     tables = {
@@ -182,3 +257,78 @@ def test_it_fits_and_axe_finds_nothing(size: dict[str, int], visitor: Visitor) -
     fit(page)
     assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
     assert not violations(page)
+
+
+def press(page: Page, name: str) -> None:
+    """Go to a control by Tab, each stop of which is seen, and press Enter there."""
+    goal = page.get_by_role("button", name=name, exact=True)
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        assert page.evaluate(SEEN), page.evaluate("document.activeElement.outerHTML.slice(0, 200)")
+        if goal.evaluate("goal => goal === document.activeElement"):
+            page.keyboard.press("Enter")
+            return
+    pytest.fail(f"60 stops, and none is {name!r}")
+
+
+# A ring about what has the focus, or about the label that stands for it, within the window.
+SEEN = """() => {
+    const at = document.activeElement
+    if (at === document.body) return false
+    const about = [at, at.closest('label')].filter(part => part && part.getBoundingClientRect().width > 2)
+    return about.some(part => {
+        const {top, bottom} = part.getBoundingClientRect()
+        const {outlineStyle, outlineWidth} = getComputedStyle(part)
+        return bottom > 0 && top < innerHeight && outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2
+    })
+}"""
+
+
+def test_by_keys_alone(visitor: Visitor) -> None:
+    """An example is chosen, its fit stopped and begun again, and what was found goes to the bench: no focus is lost."""
+    page = visitor.open("#/measure", size=LAPTOP, drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    press(page, "A ball on a ramp")
+    expect(page.get_by_role("status").filter(has_text="180 rows")).to_be_visible()
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_focused()
+    expect(page.get_by_test_id("fit")).to_be_enabled(timeout=4 * PATIENCE)
+    page.route("**/api/fit", lambda _: None)
+    press(page, "Fit")
+    expect(page.get_by_test_id("fit-stop")).to_be_focused()
+    page.keyboard.press("Space")
+    expect(page.get_by_test_id("fit")).to_be_focused()
+    page.unroute_all()
+    page.keyboard.press("Space")
+    expect(page.get_by_test_id("verdict")).to_be_visible(timeout=4 * PATIENCE)
+    found_there = page.get_by_role("status", name="What was found")
+    expect(found_there).to_be_focused()
+    expect(found_there).to_contain_text("good fit")
+    assert page.evaluate(SEEN)
+    value, _ = found(page, "Body: Inertia ratio k")
+    press(page, "Open the fitted scenario on the bench")
+    expect(page.get_by_role("main")).to_be_focused()
+    expect(page.get_by_label("Inertia ratio k").first).to_have_value(re.compile(f"^{value:.2f}"))
+
+
+def test_an_answer_by_keys_keeps_the_focus(visitor: Visitor) -> None:
+    page = visitor.open("#/measure", drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    t = np.arange(60) / 30
+    take(page, "ball.csv", table("t (s);x;y", np.column_stack([t, 10 * t, 0 * t])))
+    expect(page.get_by_test_id("question").get_by_role("button", name="m", exact=True)).to_be_focused()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_test_id("said")).to_contain_text("60 rows")
+    expect(page.get_by_text("How the file is read")).to_be_focused()
+
+
+def test_a_last_step_that_is_undone_keeps_the_focus(visitor: Visitor) -> None:
+    page = visitor.open("#/bench?name=level-turntable-nudged", drawn=False, cards=False)
+    page.get_by_role("slider", name="Rate").first.focus()
+    page.keyboard.press("ArrowRight")
+    undo = page.get_by_role("button", name="Undo")
+    expect(undo).to_be_enabled()
+    undo.focus()
+    page.keyboard.press("Enter")
+    expect(undo).to_be_disabled()
+    expect(page.get_by_role("button", name="Redo")).to_be_focused()

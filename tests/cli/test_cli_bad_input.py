@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from trundle.cli import run
+from trundle.cli.app import command
 from trundle.scenario import files
 from trundle.simulation import memory
 
@@ -58,6 +60,7 @@ def test_a_bad_file(here: Command, folder: Path, there: str, instead: str, key: 
         (["tilted-turntable", "--duration", "0 s"], "`--duration` must be positive; got '0 s'"),
         (["tilted-turntable", "--duration", "20"], "`--duration` must be a time with its unit; got '20'. Write '20 s'"),
         (["tilted-turntable", "--duration", "20 m"], "`--duration` must be a time; got '20 m'"),
+        (["tilted-turntable", "--every", "0"], "got '0'. Write its unit behind it, as in '60 s'."),
         (["tilted-turntable", "--every", "nan"], "`--every` must be a finite number; got 'nan'"),
         (["tilted-turntable", "--every", "1 h"], "`--every` must not be longer than the run"),
         (["tilted-turntable", "--every", "1e-12 s"], "`--every` must leave at most 10,000,000 samples"),
@@ -177,3 +180,26 @@ def test_rooms_that_do_not_cover_a_free_table_say_so(here: Command, folder: Path
     done = here(*words)
     assert (done.status, done.files) == (2, {"theirs.csv"})
     assert said in done.err
+
+
+def _single() -> list[tuple[str, str, int]]:
+    """Each option of each command that is given once, and how many words it takes."""
+    return [
+        (name, max(option.opts, key=len), option.nargs)
+        for name, one in command().commands.items()
+        for option in one.params
+        if option.param_type_name == "option" and not (option.multiple or option.is_flag)
+    ]
+
+
+@pytest.mark.parametrize("name", sorted({name for name, *_ in _single()}))
+def test_an_option_of_one_value_is_not_given_two(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The first would be lost without a word."""
+    for option, size in [(option, size) for command_name, option, size in _single() if command_name == name]:
+        assert run([name, *2 * [option, *size * ["1"]]]) == 2
+        assert capsys.readouterr().err == f"trundle: `{option}` must be given once; got '2 values'. Keep one.\n"
+
+
+def test_a_switch_may_be_thrown_twice_and_a_list_be_long(trundle: Command) -> None:
+    words = ("--plan", "--plan", "-f", "support.tilt", "-f", "body.mass")
+    assert trundle("fit", "-s", "cylinder-on-incline", *words).status == 0

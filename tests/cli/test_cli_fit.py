@@ -68,7 +68,10 @@ def test_it_prints_the_numbers_and_writes_all_of_it(trundle: Command) -> None:
 
 @pytest.mark.parametrize(("form", "ending"), [("latex", "tex"), ("markdown", "md"), ("csv", "csv")])
 def test_the_last_line_of_a_table_ends(here: Command, form: str, ending: str) -> None:
-    here("fit", "track.csv", *ASKED, "--no-figure", "--table", form)
+    others = [one for other in ("latex", "csv", form) for one in ("--table", other)]
+    here("fit", "track.csv", *ASKED, "--no-figure", "--table", form, *others)
+    assert Path("track/fit.tex").is_file()
+    assert Path("track/fit.csv").is_file()
     text = Path(f"track/fit.{ending}").read_bytes()
     assert text.endswith(b"\n")
     assert not text.endswith(b"\n\n")

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from tests.fitting.measured import RADIUS, ball, scenario, turntable
 
 import trundle as tr
+from trundle.analysis.fit.unknowns import prepared
 
 K, BIAS = "body.inertia_ratio", "gyroscope.bias"
 NOISE = "0.01 rad/s"
@@ -58,6 +59,35 @@ def test_it_shows_the_ratio_of_inertia_alone(rate: float, mounting: np.ndarray) 
         assert abs(one.value - truth) < 4 * one.sigma
     assert found[K].sigma < 0.01
     assert found.answer == "good"
+
+
+@pytest.mark.parametrize("rate", [3.487, -2.1])
+def test_the_spin_is_found_with_the_start(rate: float) -> None:
+    """Whoever lets a ball go knows its spin no better than its velocity."""
+    found = tr.fit(inside(rate), table(rate), K, noise=NOISE)
+    assert found.answer == "good"
+    for name, truth in ((K, 0.4), ("start.spin", 2.0)):
+        assert abs(found[name].value - truth) < 4 * found[name].sigma
+
+
+def test_the_turning_along_axes_at_rest_shows_the_spin_too() -> None:
+    """On a level table at rest a ball rolls straight on: Ω = n×V/a + spin n for good."""
+    draw = np.random.default_rng(2).normal(scale=1e-3, size=(2, T.size))
+    seen = {"t": T, "x": 0.1 + 0.05 * T + draw[0], "wz": -1.3 + draw[1]}
+    placed = {"position": [0.0, 0.0], "spin": 0.5}
+    found = tr.fit(seen, scenario(body=ball(0.4), start=placed), [], noise={"x": 1e-3, "wz": 1e-3})
+    assert abs(found["start.spin"].value + 1.3) < 4 * found["start.spin"].sigma < 1e-3
+
+
+def test_a_spin_is_about_the_normal_where_a_bowl_leans() -> None:
+    """What the three components of Ω say of it, and not the one along z."""
+    bowl = {"kind": "bowl", "radius": 0.2}
+    told = {"body": ball(0.4), "support": bowl, "start": {"position": [0.1, 0.0], "velocity": [0.0, 0.1], "spin": 3.0}}
+    spun = scenario(**told)
+    Omega = spun.start_state().angular_velocity
+    assert abs(Omega[2] - 3.0) > 0.5
+    turning = scenario(**{**told, "start": {**told["start"], "spin": None, "angular_velocity": list(Omega)}})
+    assert prepared(turning, [], 0.0).start.spin == pytest.approx(3.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("rate", [3.487, -2.1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from dataclasses import replace
 from itertools import chain, product
@@ -128,6 +129,7 @@ def test_a_figure_and_a_page_of_its_own(fitted: tr.Fit, tmp_path) -> None:
     text = fitted.save_html(tmp_path / "fit.html").read_text(encoding="utf-8")
     assert "data:image/png;base64," in text
     assert "<script" not in text
+    assert html.unescape(text).count(fitted.to_toml().rstrip()) == 1
 
 
 def test_emcee_draws_what_least_squares_say() -> None:

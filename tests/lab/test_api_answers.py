@@ -12,8 +12,9 @@ from tests.lab.conftest import shipped
 
 import trundle as tr
 from trundle.analysis.derivation.naming import derive_scenario_numbers
-from trundle.lab import create_app
+from trundle.lab import Settings, create_app
 from trundle.lab.deriving import rows_of
+from trundle.lab.settings import FILMS
 from trundle.scenario import ScenarioFile, files
 from trundle.views.scene import unpack
 
@@ -88,6 +89,23 @@ def test_what_is_asked_again_comes_from_the_cache_byte_for_byte(lab: TestClient)
     assert again.headers["etag"] == first.headers["etag"]
     other = ask(lab, "simulate", scenario=tables, samples=50)
     assert other.headers["etag"] != first.headers["etag"]
+
+
+def test_a_lab_without_a_cache_computes_again_and_takes_no_long_request() -> None:
+    settings = Settings(workers=1, slow_workers=1, cache_bytes=0, body_bytes=5000)
+    with TestClient(create_app(settings), base_url="http://127.0.0.1") as lab:
+        tables = shipped("tilted-turntable")
+        first, again = (ask(lab, "simulate", scenario=tables, samples=50) for _ in range(2))
+        assert again.content != first.content  # each has the seconds that it took
+        long = lab.post("/api/simulate", json={"scenario": {**tables, "notes": 5000 * "a"}})
+        assert long.status_code == 413
+
+
+def test_a_film_has_as_long_to_arrive_as_its_setting_says() -> None:
+    settings = Settings(film_bytes=7, film_reading_time=8.0, body_bytes=9, upload_bytes=10, reading_time=11.0)
+    assert settings.body_bounds(FILMS) == (7, 8.0)
+    assert settings.body_bounds("/api/track") == (10, 11.0)
+    assert settings.body_bounds("/api/fit") == (9, 11.0)
 
 
 def test_who_has_an_answer_is_not_sent_it_again(lab: TestClient) -> None:

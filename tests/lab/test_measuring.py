@@ -92,6 +92,19 @@ def test_a_file_that_is_too_large_is_not_read() -> None:
     assert "Send less" in answer.json()["error"]["message"]
 
 
+@pytest.mark.parametrize("most", [0.02, 60.0])
+def test_a_fit_has_a_time_of_its_own(most: float) -> None:
+    """Not that of other computations, whichever is longer."""
+    settings = Settings(workers=1, slow_workers=1, fit_time=most, wall_time=60.02 - most, quick_time=60.0)
+    track = RAMP.track()
+    columns = {name: [None if np.isnan(v) else float(v) for v in track[name]] for name in ("t", "x")}
+    asked = {"scenario": RAMP.scenario, "columns": columns, "free": RAMP.free, "noise": RAMP.noise}
+    with TestClient(create_app(settings), base_url="http://127.0.0.1") as lab:
+        answer = lab.post("/api/fit", json=asked)
+    assert answer.status_code == (504 if most < 1 else 200), answer.text
+    assert most > 1 or "0.02 s" in answer.json()["error"]["message"]
+
+
 def test_a_fit_of_columns_that_are_no_motion_says_what_is_wrong(lab: TestClient) -> None:
     for columns, said in (({"t": [0, 1]}, "columns"), ({"t": [0, 1], "x": [0, 1]}, "rows at least")):
         answer = lab.post("/api/fit", json={"scenario": RAMP.scenario, "columns": columns})

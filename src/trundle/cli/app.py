@@ -22,6 +22,7 @@ from .export import export
 from .fit import fit
 from .lab import lab
 from .map import draw_map
+from .once import Once
 from .options import Folder, Json, Name, Quiet, folder_for, load
 from .read import read
 from .score import score
@@ -73,6 +74,8 @@ def command() -> Any:
     app.command("tolerance", short_help="How far a run may be off within tolerances.")(tolerance)
     app.command("chaos", short_help="Lyapunov exponents, Poincaré sections, periodic orbits.")(chaos)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
+    for registered in app.registered_commands:
+        registered.cls = Once
     return typer.main.get_command(app)
 
 

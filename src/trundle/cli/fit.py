@@ -72,7 +72,8 @@ def fit(
         bool, typer.Option("--plan", help="Measure nothing: say how well each number would be known.")
     ] = False,
     table: Annotated[
-        str | None, typer.Option(metavar="FORM", help="Write the table too: markdown, latex or csv.")
+        list[str] | None,
+        typer.Option(metavar="FORM", help="Write the table too: markdown, latex or csv; repeat for more."),
     ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure, and write no page.")] = False,
     quiet: Quiet = False,
@@ -99,7 +100,7 @@ def fit(
         return
     if not tracks:
         raise InvalidValueError("TRACK", "must name a file", "none", "Or plan a measurement: --plan.")
-    files = _names(table, figure=not no_figure)
+    files = _names(table or [], figure=not no_figure)
     folder = folder_for(output, tracks[0] if known is None else Path(known.name))
     from .writing import check_folder, write_together
 
@@ -137,12 +138,13 @@ def fit(
     _leave(found)
 
 
-def _names(table: str | None, *, figure: bool) -> list[str]:
-    if table is not None and table not in TABLES:
-        from ..errors import UnknownNameError
+def _names(forms: list[str], *, figure: bool) -> list[str]:
+    for form in forms:
+        if form not in TABLES:
+            from ..errors import UnknownNameError
 
-        raise UnknownNameError("form of table", table, TABLES)
-    return [SCENARIO, DATA, *([FIGURE, PAGE] if figure else []), *([TABLES[table]] if table else [])]
+            raise UnknownNameError("form of table", form, TABLES)
+    return [SCENARIO, DATA, *([FIGURE, PAGE] if figure else []), *dict.fromkeys(TABLES[form] for form in forms)]
 
 
 def _ask_more(found: Fit, draws: int, *, compare: bool) -> None:

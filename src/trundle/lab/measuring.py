@@ -17,6 +17,7 @@ from .answers import answering, as_json, scenario_from
 from .cache import Answer
 from .errors import refused
 from .exports import slug
+from .parts import words_of
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
@@ -188,7 +189,6 @@ def fitted(
     from ..analysis.fit.api import fit_observed
     from ..analysis.fit.camera import Camera
     from ..analysis.fit.observations import observe
-    from ..analysis.fit.unknowns import OUTSIDE
     from ..extras import need
 
     need("fit", "the page Measure")
@@ -215,9 +215,7 @@ def fitted(
             "scenario": files.parse(found.scenario.to_toml(), found.title),
             "commented": found.to_toml(),
             "way": _way(found, way),
-            "named": [
-                {"key": one.name, **_called(one.name)} for one in found.estimates if one.name.startswith(OUTSIDE)
-            ],
+            "named": [{"key": one.name, **_called(found.scenario, one.name)} for one in found.estimates],
             "seen": None if view is None else _seen(found, view),
         }
     )
@@ -240,15 +238,18 @@ def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any
     return {"time": model.seen.time[rows].tolist(), "columns": list(model.seen.columns), "frames": paths}
 
 
-def _called(name: str) -> dict[str, str]:
-    """Return what the page calls a number that is not of the scenario.
+def _called(scenario: Any, name: str) -> dict[str, str]:
+    """Return what the page calls a number of a fit.
 
     Examples
     --------
-    >>> _called("gyroscope.mounting[0]")
+    >>> from ..scenario import Scenario
+    >>> _called(Scenario.load("tilted-turntable"), "gyroscope.mounting[0]")
     {'group': 'Gyroscope', 'label': 'Turn in the body x'}
     """
     key, _, place = name.partition("[")
+    if key not in _WORDS:
+        return words_of(scenario, name)
     group, label = _WORDS[key]
     axis = f" {'xyz'[int(place.rstrip(']'))]}" if place else ""
     return {"group": group, "label": f"{label}{axis}"}

@@ -1,6 +1,6 @@
 /** The sliders of a live page. */
 import { shownDigits } from '../languages/translate'
-import { element, put } from '../viewer/elements'
+import { element, handOver, put } from '../viewer/elements'
 import { shortNumber } from '../viewer/quantities'
 import type { SliderHeader } from './header'
 
@@ -78,6 +78,7 @@ export class Bench {
     field.value = shownDigits(text)
     if (slide) range.value = String(value / factor)
     put(range, 'aria-valuetext', `${text} ${unit}`.trim())
+    if (!this.moved) handOver(this.back, this.rows[0]!.range)
     this.back.disabled = !this.moved
   }
 }

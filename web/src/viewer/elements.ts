@@ -27,6 +27,11 @@ export function hide(element: HTMLElement, hidden: boolean): void {
   if (element.hidden !== hidden) element.hidden = hidden
 }
 
+/** Before a part is hidden or disabled: a focus within goes to the first of others that takes it, and is not lost. */
+export function handOver(from: Element, ...others: HTMLElement[]): void {
+  for (const other of others) if (from.contains(document.activeElement)) other.focus()
+}
+
 /** Set an attribute. */
 export function put(element: Element, name: string, value: string): void {
   const said = WORDED.has(name) ? t(value) : value

@@ -174,7 +174,8 @@ def pose(
 ) -> Problem:
     """Return the problem that a fit solves."""
     names = [free] if isinstance(free, str) else list(free)
-    runs = [prepared(scenario, names, float(one.time[0]) + float(camera.time_offset)) for one in seen]
+    asked = [*names, "start.spin"] if start and any(one.turning for one in seen) else names
+    runs = [prepared(scenario, asked, float(one.time[0]) + float(camera.time_offset)) for one in seen]
     found = unknowns(runs[0], names, camera, seen, start=start)
     if not found:
         raise InvalidValueError(

@@ -47,6 +47,11 @@ class Observations:
         """Which values there are, (n, c)."""
         return np.isfinite(self.values)
 
+    @property
+    def turning(self) -> bool:
+        """Whether it was measured how the body turns."""
+        return any(name.startswith(("w", "gyro_", "spot_")) for name in self.columns)
+
     def column(self, name: str) -> Array:
         """Return one column."""
         return np.asarray(self.values[:, self.columns.index(name)])

@@ -230,9 +230,8 @@ def page(fit: Fit) -> str:
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         "<style>body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}"
-        "img{max-width:100%}pre{overflow-x:auto;background:#f4f3ee;padding:1rem}</style></head><body>"
-        f"{fit._repr_html_()}"
+        "img{max-width:100%}</style></head><body>"
+        f"{fit._repr_html_().replace('<details>', '<details open>')}"
         f'<p><img alt="Measured and fitted motion, residuals, correlations" src="data:image/png;base64,{encoded}"></p>'
-        f"<h2>Fitted scenario</h2><pre>{html.escape(toml(fit))}</pre>"
         f"<h2>Card of the fitted run</h2>{fit.card._repr_html_()}</body></html>\n"
     )

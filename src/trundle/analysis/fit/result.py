@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Headline, Markup, Plottable, Serializable, fold, paragraph, section, table
+from ...display import Headline, Markup, Plottable, Serializable, escaped, fold, paragraph, section, table
 from ...errors import UnknownNameError
 from ...scenario import ScenarioFile
 from ...simulation.simulate import Scenario
@@ -229,7 +229,7 @@ class Fit(Plottable, Serializable):
         for remark in self.remarks:
             yield paragraph(remark)
         yield section("Correlations", table(*report.correlation_cells(self))) if len(self.values) < 12 else Markup()
-        yield fold("Fitted scenario", paragraph(self.to_toml()))
+        yield fold("Fitted scenario", Markup(f'<pre tabindex="0">{escaped(self.to_toml())}</pre>'))
 
     def table(self, form: str = "text") -> str:
         """Return the table of numbers.

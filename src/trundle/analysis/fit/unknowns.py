@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import InvalidValueError, ScenarioError, TrundleError, UnknownNameError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.duals import value_of
+from ...mechanics.nearest import closest_contact
 from ...mechanics.scalars import namespace
 from ...scenario import ScenarioFile
 from ..sensitivities import keys
@@ -83,14 +84,22 @@ def prepared(scenario: ScenarioFile, free: Sequence[str], time: float) -> Scenar
     if isinstance(start.velocity, str) and at is not None:
         update["velocity"] = tuple(float(part) for part in at.velocity[:2])
     asked = {name.partition("[")[0] for name in free}
-    if start.angular_velocity is not None and scenario.support.friction is None and at is not None:
-        update |= {"angular_velocity": None, "spin": float(at.angular_velocity[2])}
-    elif "start.spin" in asked and start.spin is None and start.angular_velocity is None:
-        update["spin"] = float(scenario.start_state().angular_velocity[2])
+    if start.angular_velocity is not None and scenario.support.friction is None:
+        update |= {"angular_velocity": None, "spin": _spin(scenario)}
+    elif ("start.spin" in asked or at is not None) and start.spin is None and start.angular_velocity is None:
+        update["spin"] = _spin(scenario)
     fields_set = start.model_fields_set | set(update)
     begun = start.model_copy(update=update)
     begun.__pydantic_fields_set__ = fields_set
     return scenario.model_copy(update={"start": begun, "support": without_rim(scenario.support, asked)})
+
+
+def _spin(scenario: ScenarioFile) -> float:
+    """Return the rate at which the body turns about the normal as it starts."""
+    at = scenario.start_state()
+    place, turned = Vector(*at.position), Quaternion(*at.orientation)
+    normal = closest_contact(scenario.system(), at.time, place, turned, at.support).normal
+    return float(normal.dot(Vector(*at.angular_velocity)))
 
 
 def without_rim(support: Any, asked: set[str]) -> Any:
@@ -147,13 +156,18 @@ def unknowns(
     asked = {one.key for one in found}
     for i, one in enumerate(seen):
         run = i if several else None
-        own = keys.chosen(scenario, START) if start else []
+        own = keys.chosen(scenario, _of_start(scenario, one)) if start else []
         found += [Unknown(k.name, run, float(k.value), k.unit, False) for k in own if k.name not in asked]
         found += [Unknown(k, run, v, unit, False) for k, (v, unit) in of_marks(one).items()]
     distinct: dict[str, Unknown] = {}
     for each in found:
         distinct.setdefault(each.name, each)
     return list(distinct.values())
+
+
+def _of_start(scenario: ScenarioFile, seen: Observations) -> tuple[str, ...]:
+    """Return the numbers of a start that are found: its spin where the turning of the body was measured."""
+    return (*START, "start.spin") if seen.turning and scenario.start.spin is not None else START
 
 
 def _of_gyroscope(name: str, seen: Sequence[Observations]) -> list[Unknown]:

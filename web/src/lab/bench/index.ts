@@ -1,6 +1,6 @@
 /** The bench: a scenario, its controls, its motion, and theory beside measurement. */
 import { createCurves } from '../../curves/curves'
-import { hide, say } from '../../viewer/elements'
+import { handOver, hide, say } from '../../viewer/elements'
 import { shortNumber } from '../../viewer/quantities'
 import { createAfterwards } from '../afterwards'
 import { ApiError, isAbort } from '../api'
@@ -176,6 +176,10 @@ function _mount(host: HTMLElement, app: App): () => void {
       fill(notes, h('summary', {}, 'What to look for'), h('div', {}, paragraphs))
       noted = text
     }
+    back.disabled &&= !store.canUndo
+    again.disabled &&= !store.canRedo
+    if (!store.canUndo) handOver(back, again, chooser)
+    if (!store.canRedo) handOver(again, back, chooser)
     back.disabled = !store.canUndo
     again.disabled = !store.canRedo
   }

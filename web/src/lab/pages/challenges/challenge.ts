@@ -107,14 +107,15 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
       say(verdict, answering.missing)
       return
     }
-    check.disabled = true
+    if (check.ariaDisabled === 'true') return
+    check.ariaDisabled = 'true' // and not disabled, which would take the focus from it
     try {
       const judged = await app.api.judged(name, values, answer)
       await judgedTo(judged, answer)
     } catch (error) {
       if (!isAbort(error)) fill(result, h('p', { class: 'alert' }, told(error)))
     }
-    check.disabled = false
+    check.ariaDisabled = null
   }
 
   async function judgedTo(

@@ -1,6 +1,6 @@
 /** A film: kept by the lab, its first picture shown, what is in it told, and the ball followed through it. */
 import { shownDigits, t, typedDigits } from '../../../languages/translate'
-import { put, say } from '../../../viewer/elements'
+import { handOver, put, say } from '../../../viewer/elements'
 import { type Api, ApiError, type FilmBounds, isAbort, type KeptFilm, type Track } from '../../api'
 import { cleanup, fill, h, uniqueId } from '../../dom'
 import type { Json } from '../../scenario'
@@ -323,6 +323,9 @@ export function createFilm({ api, followed, wrong }: FilmPanelOptions): FilmPane
   }
 
   function busy(now: boolean): void {
+    if (now) stop.hidden = false
+    else go.disabled = false
+    handOver(now ? go : stop, now ? stop : go)
     go.disabled = now
     stop.hidden = !now
     bar.hidden = !now

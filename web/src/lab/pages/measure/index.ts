@@ -1,6 +1,6 @@
 /** From a track that was measured to numbers with errors, and what they cannot tell. */
 import { shownDigits, t, typedDigits } from '../../../languages/translate'
-import { put, say } from '../../../viewer/elements'
+import { handOver, put, say } from '../../../viewer/elements'
 import {
   ApiError,
   type ExampleTrack,
@@ -22,7 +22,7 @@ import { button } from '../parts/controls'
 import { createStage, playUnlessCalm, told } from '../parts/stage'
 import { createFilm, isFilm } from './film'
 import { createPlot } from './plot'
-import { createReading, type How } from './reading'
+import { byLabels, createReading, type How } from './reading'
 import { marked, report } from './report'
 import { createShowing } from './showing'
 
@@ -104,10 +104,16 @@ export const measure: Page = {
 
     // 3. The fit
     const go = button('Fit', () => fitting.ask(null), 'primary', 'fit')
-    const halt = button('Stop', stopFitting, 'plain', 'fit-stop')
+    const halt = button('Stop', () => fitting.stop(), 'plain', 'fit-stop')
     let choosing: object | null = null // a scenario that is on its way
     let busy = false
-    const results = h('div', { class: 'measure-results', role: 'status', 'aria-label': 'What was found' })
+    const verdict = h('div', {
+      class: 'measure-verdicts',
+      role: 'status',
+      'aria-label': 'What was found',
+      tabindex: -1,
+    })
+    const results = h('div', { class: 'measure-results' })
     const bench = button('Open the fitted scenario on the bench', () => void openBench(), 'plain', 'fit-bench')
     const file = button('Save fit.toml', () => fitted && save(new Blob([fitted.commented]), 'fit.toml'), 'plain')
     const after = h('div', { class: 'buttons', hidden: true }, bench, file)
@@ -121,21 +127,23 @@ export const measure: Page = {
     /** What may be pressed now. */
     function ready(): void {
       say(go, busy ? 'Fitting …' : 'Fit')
-      go.disabled = busy || track === null || choosing !== null
+      const able = !busy && track !== null && choosing === null
+      if (able) go.disabled = false
+      if (busy) {
+        halt.hidden = false
+        handOver(go, halt)
+      } else handOver(halt, go)
+      go.disabled = !able
       halt.hidden = !busy
     }
 
     ready()
 
-    function stopFitting(): void {
-      fitting.stop()
-      go.focus()
-    }
-
     function forget(): void {
       fitting.stop()
       fitted = null
       after.hidden = true
+      fill(verdict)
       fill(results)
       plot.way(null, true)
       showing.fitted(null)
@@ -148,7 +156,7 @@ export const measure: Page = {
       fill(
         said,
         h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
-        answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
+        answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(byLabels(sentence)))),
       )
       ready()
       plot.measured(answer)
@@ -275,7 +283,8 @@ export const measure: Page = {
       },
       done(answer) {
         fitted = answer
-        report(results, answer, numbers)
+        report(verdict, results, answer, numbers)
+        if (halt.matches(':focus-visible')) verdict.focus() // by keys all of the stage lies between
         after.hidden = false
         plot.way(answer.way, app.settings.reducedMotion)
         showing.fitted(answer.seen)
@@ -329,7 +338,7 @@ export const measure: Page = {
             h('div', { class: 'buttons' }, go, halt),
           ),
         ),
-        h('div', { class: 'measure-seen' }, stage.element, showing.element, plot.element, results, after),
+        h('div', { class: 'measure-seen' }, stage.element, showing.element, plot.element, verdict, results, after),
       ),
     )
     undo.add(dropping(host, dropped))

@@ -1,5 +1,6 @@
 /** What a file does not say of itself: asked when it has to be known, and to be changed at any time. */
-import { shownDigits, typedDigits } from '../../../languages/translate'
+import { shownDigits, t, typedDigits } from '../../../languages/translate'
+import { handOver } from '../../../viewer/elements'
 import type { Question } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { button } from '../parts/controls'
@@ -60,6 +61,14 @@ const FIELDS: readonly Asked[] = [
 
 const digitsOf = (key: string) => FIELDS.some((one) => one.key === key && one.digits)
 
+/** What the package says of a file, with the names of this page for its options: “Unit of angles” for --angles. */
+export function byLabels(sentence: string): string {
+  return sentence.replace(/--([a-z]+)/g, (option, name: string) => {
+    const field = FIELDS.find(({ key }) => key === (name === 'unit' ? 'units' : name))
+    return field ? `“${t(field.label)}”` : option
+  })
+}
+
 export function createReading(changed: (how: How) => void): Reading {
   let how: How = {}
   const inputs = new Map<string, HTMLInputElement | HTMLSelectElement>()
@@ -85,7 +94,10 @@ export function createReading(changed: (how: How) => void): Reading {
     changed(how)
   }
 
+  const about = h('summary', {}, 'How the file is read')
+
   function ask(question: Question | null): void {
+    if (!question) handOver(asked, about)
     asked.hidden = question === null
     if (!question) return
     const { key, rule, received, choices } = question
@@ -120,7 +132,7 @@ export function createReading(changed: (how: How) => void): Reading {
       'div',
       { class: 'measure-reading' },
       asked,
-      h('details', {}, h('summary', {}, 'How the file is read'), h('div', { class: 'measure-fields' }, rows)),
+      h('details', {}, about, h('div', { class: 'measure-fields' }, rows)),
     ),
     ask,
     set(next) {

@@ -5,13 +5,13 @@ import { inPrint, nameOf } from '../maps/axes'
 
 const SIGNS: Record<Fitted['answer'], string> = { good: '✓', bad: '✗', 'cannot decide': '?' }
 
-export function report(host: HTMLElement, found: Fitted, numbers: readonly Named[]): void {
+export function report(verdict: HTMLElement, host: HTMLElement, found: Fitted, numbers: readonly Named[]): void {
   const named = (name: string) => {
     const known = [...numbers, ...found.named].find(({ key }) => key === name)
     return known ? nameOf(known) : h('code', {}, name)
   }
   fill(
-    host,
+    verdict,
     h(
       'p',
       { class: 'measure-verdict', 'data-answer': found.answer, 'data-testid': 'verdict' },
@@ -21,6 +21,9 @@ export function report(host: HTMLElement, found: Fitted, numbers: readonly Named
     found.unknown.map((sentence) =>
       h('p', { class: 'measure-unknown', 'data-testid': 'unknown' }, ...marked(sentence)),
     ),
+  )
+  fill(
+    host,
     h(
       'div',
       { class: 'table-scroll', tabindex: '0', role: 'region', 'aria-label': 'Numbers with their errors' },

@@ -1,4 +1,6 @@
 /** Step 6: guess where the ball goes on a leaning, turning table; then see. */
+
+import { handOver } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import { fill, h } from '../../dom'
 import { button } from '../parts/controls'
@@ -105,6 +107,7 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, work
     picks.hidden = false
     letGo.hidden = false
     letGo.disabled = true
+    handOver(again, picks.querySelector('button')!)
     again.hidden = true
     fill(remark)
     numbers.set([])
