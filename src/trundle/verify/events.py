@@ -174,8 +174,8 @@ class AtEvents:
     def _in_a_moment(self, at: Samples, span: float = 0.0) -> dict[str, float]:
         """Return by what shares the state changes while the clock, the place, or the lean is not told apart.
 
-        Where the support becomes as hollow as the body is round V and Ω change a million times as fast as the place, and
-        where a body all but lies flat the place as fast as the lean.
+        Where the support becomes as hollow as the body is round V and Ω change a million times as fast as the place;
+        so does the place beside the lean where a body all but lies flat.
         """
         F, K, J, gyroscopic = (part[0] for part in acting(self.system, at))
         R, V, Omega, sizes = at.contact_force[0], at.velocity[0], at.angular_velocity[0], self._sizes
