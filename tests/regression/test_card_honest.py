@@ -485,6 +485,35 @@ def test_a_rounding_of_the_last_lean_is_no_jump(friction: float, faster: float) 
     assert run.events[-1].kind == "edge"
 
 
+@pytest.mark.parametrize("height", [0.03, 0.06, 0.0837479])
+def test_a_flight_to_where_the_track_is_as_hollow_as_the_ring(height: float) -> None:
+    # The place that is nearest there is known to a root of a rounding only: it differs from one instant to the next.
+    run = passes(
+        body={"kind": "ring", "radius": 0.0168899, "mass": 0.0250152},
+        support={
+            "kind": "torus-track",
+            "ring_radius": 0.477418,
+            "tube_radius": 0.148235,
+            "friction": 0.92294,
+            "kinetic_friction": 0.0,
+            "restitution": 0.187614,
+            "tangential_restitution": 0.415956,
+            "motion": {
+                "kind": "tilt",
+                "angle": "0.190064*sqrt(1 + 0.682492*t)",
+                "axis": [0.0, 0.0753854, -0.181466],
+            },
+        },
+        start={
+            "position": [-0.00595304, 0.0],
+            "orientation": [-0.168692, -0.0277025, -0.0312925, -0.174921],
+            "height": height,
+        },
+        run={"duration": 0.950409, "every": 0.0205301},
+    )
+    assert [event.kind for event in run.events] == ["land", "curved"]
+
+
 # --- rest ---------------------------------------------------------------------------------------------------------
 
 

@@ -320,7 +320,7 @@ class AtEvents:
             left, then = self._left(event, at), self._sample(event.time)
             allowed = _SHORT + (_GOES_ON * self.bound if event.kind == "curved" else 0.0)
             if then is not None:  # it goes with the root of the time that is left, its square evenly with the time
-                allowed += float(np.sqrt(_CLOSE * max(0.0, left**2 - self._left(event, then) ** 2)))
+                allowed += float(np.sqrt(_CLOSE * abs(left**2 - self._left(event, then) ** 2)))
             yield event, "1 + C S singular" if event.kind == "curved" else "at the end", abs(left), allowed
         elif event.kind == "spot":
             yield (
