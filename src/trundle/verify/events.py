@@ -33,6 +33,7 @@ from .friction import holding, normal_and_friction
 _SLACK = 1e-8  # by which static friction and resistance hold more than they say (docs/phases.md), and rounding
 _SHORT = 2e-6  # a run stops a millionth short of an end at which the law is singular
 _CLOSE = 100.0  # roundings of the clock: no step is shorter than ten, and one leads a tenth of the way to such an end
+_UNSURE = 4.0  # times a square that rises towards such an end is not known: it can only fall
 _MOST = 1000  # events looked at
 _GOES_ON = 100.0  # times the bound: a run goes straight on from where slip or turning has all but ended
 _STRIKES = ("land", "settle", JOLT)
@@ -320,7 +321,8 @@ class AtEvents:
             left, then = self._left(event, at), self._sample(event.time)
             allowed = _SHORT + (_GOES_ON * self.bound if event.kind == "curved" else 0.0)
             if then is not None:  # it goes with the root of the time that is left, its square evenly with the time
-                allowed += float(np.sqrt(_CLOSE * abs(left**2 - self._left(event, then) ** 2)))
+                fallen = left**2 - self._left(event, then) ** 2
+                allowed += float(np.sqrt(_CLOSE * fallen if fallen > 0 else -_UNSURE * fallen))
             yield event, "1 + C S singular" if event.kind == "curved" else "at the end", abs(left), allowed
         elif event.kind == "spot":
             yield (
