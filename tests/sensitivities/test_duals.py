@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import mpmath
@@ -11,8 +12,10 @@ import numpy as np
 import pytest
 from tests.precise import precisely
 
+import trundle as tr
+from trundle.live.recorded import Recorded
 from trundle.mechanics.algebra import Vector
-from trundle.mechanics.duals import Dual, duals, slopes_of, stacked, unstacked, value_of
+from trundle.mechanics.duals import Dual, duals, has_duals, slopes_of, stacked, unstacked, value_of
 from trundle.mechanics.jets import jets
 from trundle.mechanics.scalars import namespace
 from trundle.solve.tape import Tape
@@ -97,6 +100,15 @@ def test_decisions_look_at_the_value() -> None:
     x, y = duals((1.0, 2.0))
     assert x < y and y > x and x <= 1.0 and x >= 1.0 and x == 1.0 and x != y  # noqa: PT018
     assert f"{x:.2f}" == "1.00"
+
+
+@pytest.mark.parametrize("number", [Dual(2.0, (1.0,)), Recorded(2.0, 2.0)])
+def test_duals_of_every_kind_are_found_wherever_they_are(number: Dual) -> None:
+    plain = tr.RollingSystem(tr.Body.solid_sphere(0.02, 1.0), tr.Support(tr.Bowl(0.5)))
+    assert not has_duals(plain)
+    assert has_duals(number)
+    assert has_duals((1.0, (number,)))
+    assert has_duals(replace(plain, support=tr.Support(tr.Bowl(number))))
 
 
 def test_stacked_duals_come_back() -> None:

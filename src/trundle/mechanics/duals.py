@@ -323,7 +323,7 @@ def has_duals(thing: Any) -> bool:
     kind: Any = type(thing)
     if kind is float:  # most are
         return False
-    if kind is Dual:
+    if isinstance(thing, Dual):
         return True
     if isinstance(thing, tuple):
         return any(map(has_duals, thing))
