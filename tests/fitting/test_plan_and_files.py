@@ -16,6 +16,7 @@ from tests.fitting.measured import ball, on_turntable, scenario, seen, turntable
 import trundle as tr
 from trundle.analysis.fit import report
 from trundle.analysis.fit.observations import COLUMNS, unit_of
+from trundle.analysis.fit.sampling import Samples
 from trundle.analysis.fit.undetermined import pm
 
 K, RATE = "body.inertia_ratio", "support.motion.rate"
@@ -140,6 +141,20 @@ def test_emcee_draws_what_least_squares_say() -> None:
     assert spread == pytest.approx(found[K].sigma, rel=0.35)
     assert abs(np.median(draws.draws[:, 0]) - found[K].value) < found[K].sigma
     assert "too short" in draws.verdict
+
+
+@pytest.mark.parametrize("count", [500, 20000])
+def test_draws_say_which_number_is_not_normal(count: int) -> None:
+    normal = np.random.default_rng(3).normal(size=(count, 4))
+    held, way = np.zeros(count), normal[:, 0]
+    draws = np.column_stack([way, np.exp(way), -np.exp(normal[:, 1]), 1 + 1e-3 * normal[:, 2], held])
+    names = ("straight", "long above", "long below", "narrow", "held")
+    made = Samples("A fit", names, ("",) * 5, draws, 0.4, 1.0, count)
+    assert made.lopsided == names[1:3]
+    assert "Not normal: long above, long below." in str(made)
+    slow = Samples("A fit", names, ("",) * 5, draws, 0.4, count / 10, count)  # ten that are independent tell nothing
+    assert slow.lopsided == ()
+    assert "were it normal" in str(slow)
 
 
 def test_errors_are_as_large_as_they_say() -> None:

@@ -57,6 +57,21 @@ def test_a_number_that_is_not_there_is_refused(wrt: str, why: str) -> None:
     assert why in refusal(wrt)
 
 
+@pytest.mark.parametrize(
+    ("wrt", "why"),
+    [
+        ("body.inertia_ratio", 'It is of [body] of kind "sphere" or'),
+        ("support.ring_radius", 'It is of [support] of kind "torus-track".'),
+        ("support.motion.angle", "It is of [support.motion] of kind"),
+        ("loads.coefficient", 'It is of [loads] of kind "drag" or'),
+    ],
+)
+def test_a_number_of_another_kind_is_told_where_it_is(wrt: str, why: str) -> None:
+    said = refusal(wrt, tr.Scenario.read(level()))
+    assert f"must name numbers that the scenario gives; got '{wrt}'" in said
+    assert why in said
+
+
 def test_a_formula_has_no_derivative() -> None:
     said = refusal("support.motion.rate", "turntable-starting-up")
     assert "a motion has no derivative by a text" in said

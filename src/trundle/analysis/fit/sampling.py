@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _QUANTILES = (0.16, 0.5, 0.84)
 _FORGOTTEN = 0.3  # share of the steps that is left out
 _LONG = 50.0  # autocorrelation times that a chain should last
+_LOPSIDED = 0.1  # share by which the two sides of a median may differ in what is as good as normal
+_SIDE = 2.3  # times 1/√n: deviation of the difference of the two sides of a normal median, over their mean
 HEADINGS = ("number", "16 %", "median", "84 %", "unit")
 
 
@@ -68,6 +70,15 @@ class Samples(Displayed):
         return [(name, *(f"{part:z.6g}" for part in parts), unit) for name, parts, unit in told if np.ptp(parts) > 0]
 
     @property
+    def lopsided(self) -> tuple[str, ...]:
+        """The numbers of which one side of the median is the longer one, by more than so few draws leave open."""
+        low, middle, high = np.quantile(self.draws, _QUANTILES, axis=0)
+        apart = np.abs(high + low - 2 * middle) / np.maximum((high - low) / 2, 1e-300)
+        independent = self.draws.shape[0] / max(self.autocorrelation, 1.0)
+        sure = (high > low) & (apart > max(_LOPSIDED, 4 * _SIDE / np.sqrt(independent)))
+        return tuple(name for name, one in zip(self.names, sure, strict=True) if one)
+
+    @property
     def verdict(self) -> str:
         """How far to trust them."""
         enough = "long enough" if self.converged else "too short: ask for more steps"
@@ -80,14 +91,21 @@ class Samples(Displayed):
         rows = [HEADINGS, *self.rows]
         widths = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
         lines = ["  ".join(f"{c:<{w}}" for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
-        return "\n".join([self.title, self.verdict, *lines])
+        return "\n".join([self.title, self.verdict, *lines, self.shape])
+
+    @property
+    def shape(self) -> str:
+        """Whether one standard deviation tells it, as far as these draws show."""
+        if not self.lopsided:
+            return "The 16 and 84 % quantiles are one standard deviation to either side, were it normal."
+        return f"Not normal: {', '.join(self.lopsided)}. Quote the median and both quantiles, not one ± for both sides."
 
     def _headline(self) -> Headline:
         return Headline(self.title, self.verdict, self.converged)
 
     def _parts(self) -> Iterator[Markup]:
         yield table(self.rows, HEADINGS, numbers=(1, 2, 3))
-        yield paragraph("The 16 and 84 % quantiles are one standard deviation to either side, were it normal.")
+        yield paragraph(self.shape)
 
 
 def sample(fit: Fit, steps: int, walkers: int, seed: int) -> Samples:

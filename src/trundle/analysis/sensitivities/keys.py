@@ -105,6 +105,11 @@ def _refusal(scenario: ScenarioFile, name: str, known: list[Key]) -> Exception:
     if isinstance(given.get(name), str):
         rule = "must name numbers: a motion has no derivative by a text"
         return InvalidValueError("wrt", rule, f"{name} = {given[name]!r}", "Give the number instead, or leave it out.")
+    place, _, field = name.rpartition(".")
+    kinds = [f'"{kind}"' for kind, table in scenario.kinds.get(place, {}).items() if field in table.model_fields]
+    if kinds and field != "kind":
+        rule = "must name numbers that the scenario gives"
+        return InvalidValueError("wrt", rule, name, f"It is of [{place}] of kind {' or '.join(kinds)}.")
     return UnknownNameError("number of the scenario", name, names)
 
 
