@@ -192,6 +192,21 @@ def test_lists_scripts_and_cases_are_printed(
 INSTALLED = [name for name in engines.names() if (engine := engines.engine(name)).packages and engine.installed]
 
 
+@pytest.mark.parametrize("of", portable.scripts(), ids=" ".join)
+def test_a_script_of_a_finding_is_short_and_needs_its_engine_only(of: tuple[str, str]) -> None:
+    text = portable.script(*of)
+    assert len(text.splitlines()) <= 40
+    assert "trundle" not in text
+    assert f"{of[0]} {of[1]}" in (Path(__file__).parents[2] / "docs" / "engines.md").read_text(encoding="utf-8")
+    engine = engines.engine(of[0])
+    if not engine.installed:
+        pytest.skip(f"{of[0]} is not installed: `trundle score --engine {of[0]}` does it")
+    ran = subprocess.run([engine.python, "-c", text], capture_output=True, text=True, check=False, timeout=300)
+    assert ran.returncode == 0, ran.stderr
+    assert "exact" in text or "exact" in ran.stdout
+    assert ran.stdout.count("\n") >= 2
+
+
 @pytest.mark.skipif(not INSTALLED, reason="no engine is installed: `trundle score --engine NAME` does it")
 @pytest.mark.parametrize("name", INSTALLED)
 def test_an_engine_that_is_installed_rolls_down_an_incline(name: str) -> None:
