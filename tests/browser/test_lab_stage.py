@@ -51,6 +51,14 @@ def is_nudged_along_x(bench: Bench, then: xr.Dataset) -> None:
     assert abs(added[1]) < 0.1 * added[0]
 
 
+def is_thrown_to_the_left(bench: Bench) -> None:
+    """Left on the screen is down the first axis."""
+    place, velocity = start(bench)
+    assert place[0] < 0.19
+    assert velocity[0] < -0.05
+    assert abs(velocity[1]) < 0.1 * abs(velocity[0])
+
+
 def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
     bench.tool("Move the ball")
     x, y = bench.stage.ball()
@@ -93,16 +101,9 @@ def test_the_ball_is_taken_with_the_pointer_that_turns_the_view_and_put_down(ben
 
 @pytest.mark.parametrize("pause", [10, 150])  # ms from move to move: also where the page is busy
 def test_the_ball_is_thrown_as_the_hand_moves(bench: Bench, pause: int) -> None:
-    """To the left on the screen, down the first axis, at about the speed of the hand."""
+    """At about the speed of the hand."""
     bench.page.evaluate(FLING, [*bench.stage.ball(), -60, pause])
-
-    def thrown() -> None:
-        place, velocity = start(bench)
-        assert place[0] < 0.19
-        assert velocity[0] < -0.05
-        assert abs(velocity[1]) < 0.1 * abs(velocity[0])
-
-    eventually(bench.page, thrown)
+    eventually(bench.page, lambda: is_thrown_to_the_left(bench))
 
 
 def test_the_ball_is_thrown_on_a_slow_machine(bench: Bench) -> None:
@@ -119,14 +120,7 @@ def test_the_ball_is_thrown_on_a_slow_machine(bench: Bench) -> None:
     for step in range(1, 13):
         tell("mouseMoved", step)
     tell("mouseReleased", 13)
-
-    def thrown() -> None:
-        place, velocity = start(bench)
-        assert place[0] < 0.19
-        assert velocity[0] < -0.05
-        assert abs(velocity[1]) < 0.1 * abs(velocity[0])
-
-    eventually(bench.page, thrown)
+    eventually(bench.page, lambda: is_thrown_to_the_left(bench))
 
 
 def test_a_click_on_the_ball_changes_nothing(bench: Bench) -> None:

@@ -243,8 +243,8 @@ def _called(scenario: Any, name: str) -> dict[str, str]:
 
     Examples
     --------
-    >>> from ..scenario import Scenario
-    >>> _called(Scenario.load("tilted-turntable"), "gyroscope.mounting[0]")
+    >>> import trundle as tr
+    >>> _called(tr.Scenario.load("tilted-turntable"), "gyroscope.mounting[0]")
     {'group': 'Gyroscope', 'label': 'Turn in the body x'}
     """
     key, _, place = name.partition("[")
