@@ -19,7 +19,8 @@ from tests.conformance.test_score import rows
 from trundle.cli import run as trundle
 from trundle.conformance import Score, cases, engines, portable
 from trundle.conformance.animation import path_of
-from trundle.conformance.measuring import errors_of
+from trundle.conformance.answers import Answer
+from trundle.conformance.measuring import Errors, errors_of
 from trundle.conformance.report import markdown, page
 
 CASES = {case.name: case for case in cases()}
@@ -209,31 +210,49 @@ def test_a_script_of_a_finding_is_short_and_needs_its_engine_only(of: tuple[str,
     assert ran.stdout.count("\n") >= 2
 
 
+def answered(name: str, of: str, step: float, *settings: str) -> list[Answer]:
+    """What an installed engine answers about a case, in each of these settings."""
+    engine = engines.engine(name)
+    chosen = {each.name: dict(each.values) for each in engine.settings}
+    with engine.adapter(60.0) as adapter:
+        return [adapter.answer(CASES[of], step, chosen[setting]) for setting in settings]
+
+
+def error_of(of: str, answer: Answer) -> Errors:
+    """How far an answer is from the exact motion."""
+    assert answer.motion is not None, answer.message
+    return errors_of(CASES[of], CASES[of].exact(), answer.motion)
+
+
 @pytest.mark.skipif(not INSTALLED, reason="no engine is installed: `trundle score --engine NAME` does it")
 @pytest.mark.parametrize("name", INSTALLED)
 def test_an_engine_that_is_installed_rolls_down_an_incline(name: str) -> None:
     """Every engine there is gets that within a fiftieth, once its documentation is followed."""
-    engine = engines.engine(name)
-    best = next(each for each in engine.profiles if each.name == "best")
-    with engine.adapter(60.0) as adapter:
-        answer = adapter.answer(CASES["incline"], 1e-3, dict(best.values))
+    (answer,) = answered(name, "incline", 1e-3, "best")
     assert (answer.outcome, answer.message) == ("ok", "")
-    assert answer.engine.startswith(engine.title)
-    assert answer.motion is not None
-    assert errors_of(CASES["incline"], CASES["incline"].exact(), answer.motion).position < 0.02
+    assert answer.engine.startswith(engines.engine(name).title)
+    assert error_of("incline", answer).position < 0.02
 
 
 @pytest.mark.parametrize("name", [name for name in INSTALLED if name != "mjx"])  # which compiles the box for minutes
 def test_an_engine_that_is_installed_is_pushed(name: str) -> None:
     """Every engine that has boxes and balls takes the force at each of its steps."""
-    case, engine = CASES["pushed-box"], engines.engine(name)
-    best = next(each for each in engine.profiles if each.name == "best")
-    with engine.adapter(60.0) as adapter:
-        answer = adapter.answer(case, 1e-2, dict(best.values))
+    case, (answer,) = CASES["pushed-box"], answered(name, "pushed-box", 1e-2, "best")
     if answer.outcome == "cannot":
         pytest.skip(answer.message)
     assert answer.motion is not None, answer.message
     assert answer.motion.position[-1, 0, 0] > 0.5 * case.exact().position[-1, 0, 0]  # how well, is another question
+
+
+@pytest.mark.skipif(
+    "newton" not in INSTALLED, reason="newton is not installed: `trundle score --engine newton` does it"
+)
+def test_a_solver_without_restitution_is_given_no_bounce() -> None:
+    shipped, *others = answered("newton", "bounce-with-spin", 1e-2, "as shipped", "best", "SolverSemiImplicit")
+    assert shipped.outcome == "ok"
+    for answer in others:
+        assert answer.outcome == "cannot"
+        assert "has no coefficient of restitution" in answer.message
 
 
 CAUSES = [  # engine, case, step, the setting that has an error, the one that takes it away
@@ -258,26 +277,15 @@ def test_a_cause_that_the_docs_name_makes_an_error_that_goes_with_it(
 ) -> None:
     if name not in INSTALLED:
         pytest.skip(f"{name} is not installed: `trundle score --engine {name}` does it")
-    case, engine = CASES[of], engines.engine(name)
-    chosen = {each.name: dict(each.values) for each in engine.settings}
-    found = []
-    with engine.adapter(60.0) as adapter:
-        for setting in (with_it, without):
-            answer = adapter.answer(case, step, chosen[setting])
-            assert answer.motion is not None, answer.message
-            found.append(errors_of(case, case.exact(), answer.motion).worst)
-    assert found[1] < found[0] / 10
+    there, gone = (error_of(of, answer).worst for answer in answered(name, of, step, with_it, without))
+    assert gone < there / 10
 
 
 @pytest.mark.parametrize("name", [name for name in INSTALLED if name in ("dart", "pybullet")])
 def test_a_coin_rolls_on_its_rim(name: str) -> None:
     """Of a prism, as Bullet makes one from a URDF file, the orientation is half a turn off."""
-    case, engine = CASES["coin-in-a-circle"], engines.engine(name)
-    best = next(each for each in engine.profiles if each.name == "best")
-    with engine.adapter(60.0) as adapter:
-        answer = adapter.answer(case, 1e-3, dict(best.values))
-    assert answer.motion is not None, answer.message
-    assert errors_of(case, case.exact(), answer.motion).angle < 2.0
+    (answer,) = answered(name, "coin-in-a-circle", 1e-3, "best")
+    assert error_of("coin-in-a-circle", answer).angle < 2.0
 
 
 def test_what_is_done_is_kept_when_it_is_interrupted(

@@ -60,10 +60,10 @@ def test_a_number_that_is_not_there_is_refused(wrt: str, why: str) -> None:
 @pytest.mark.parametrize(
     ("wrt", "why"),
     [
-        ("body.inertia_ratio", 'It is of [body] of kind "sphere" or'),
-        ("support.ring_radius", 'It is of [support] of kind "torus-track".'),
-        ("support.motion.angle", "It is of [support.motion] of kind"),
-        ("loads.coefficient", 'It is of [loads] of kind "drag" or'),
+        ("body.inertia_ratio", 'It belongs to [body] of kind "sphere" or'),
+        ("support.ring_radius", 'It belongs to [support] of kind "torus-track".'),
+        ("support.motion.angle", "It belongs to [support.motion] of kind"),
+        ("loads.coefficient", 'It belongs to [loads] of kind "drag" or'),
     ],
 )
 def test_a_number_of_another_kind_is_told_where_it_is(wrt: str, why: str) -> None:

@@ -109,7 +109,7 @@ def _refusal(scenario: ScenarioFile, name: str, known: list[Key]) -> Exception:
     kinds = [f'"{kind}"' for kind, table in scenario.kinds.get(place, {}).items() if field in table.model_fields]
     if kinds and field != "kind":
         rule = "must name numbers that the scenario gives"
-        return InvalidValueError("wrt", rule, name, f"It is of [{place}] of kind {' or '.join(kinds)}.")
+        return InvalidValueError("wrt", rule, name, f"It belongs to [{place}] of kind {' or '.join(kinds)}.")
     return UnknownNameError("number of the scenario", name, names)
 
 

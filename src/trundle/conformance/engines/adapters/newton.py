@@ -8,7 +8,7 @@ from .serving import END, CannotError, Task, changes, march, refuse, serve
 
 LONGEST, FINEST = 2.0, 1e-3  # s: longer runs and finer steps take a processor minutes
 MOST_TAPED = 2000  # steps: to go back over them nine times takes a processor half a minute
-_TAPED = "SolverSemiImplicit"
+_XPBD, _TAPED = "SolverXPBD", "SolverSemiImplicit"
 
 
 def run(task: Task) -> Task:
@@ -24,6 +24,10 @@ def run(task: Task) -> Task:
             "hinge": "its cases are longer than 2 s",
         },
     )
+    setting = task["setting"]
+    kind = setting.get("solver", _XPBD)
+    if task["restitution"] and kind != _XPBD:
+        raise CannotError(f"{kind} has no coefficient of restitution")
     import warp as wp
 
     wp.config.quiet = True
@@ -32,14 +36,12 @@ def run(task: Task) -> Task:
     import newton
     import numpy as np
 
-    setting = task["setting"]
-    kind = setting.get("solver", "SolverXPBD")
     builder = newton.ModelBuilder(gravity=tuple(task["gravity"]))
     _support(newton, wp, np, builder, task)
     bodies = [_body(newton, wp, builder, task, body, i) for i, body in enumerate(task["bodies"])]
     model = builder.finalize(device="cpu", requires_grad="derivatives" in task and kind == _TAPED)
     options = dict(setting.get("options", {}))
-    if task["restitution"] and "solver" not in setting:
+    if task["restitution"]:
         options["enable_restitution"] = True
     solver = getattr(newton.solvers, kind)(model, **options)
     states, control, contacts = [model.state(), model.state()], model.control(), model.contacts()

@@ -44,9 +44,9 @@ def run(task: Task) -> Task:
                 for i in range(met.getNumContacts()):
                     contact = ode.OdeContact()
                     contact.setGeom(met.getContactGeom(i))
-                    contact.setSurface(surface)
                     if along:
                         _turn(contact, surface, body, under, force)
+                    contact.setSurface(surface)
                     joint = ode.OdeContactJoint(world, group, contact)
                     # Which of the two the normal points to is that of the entry.
                     joint.attach(body, under) if under is not None else joint.attachBody(body, 0)
@@ -76,7 +76,6 @@ def _turn(contact: Any, surface: Any, body: Any, under: Any, force: Any) -> None
     contact.setFdir1(along)
     # Across, it would hold back each turn of the slip with all of its strength.
     surface.setMu2(0.0 if slip.length() > _STILL else surface.getMu())
-    contact.setSurface(surface)
 
 
 def _surface(ode: Any, friction: float, restitution: float, along: bool) -> Any:

@@ -72,7 +72,7 @@ def _support(rapier: Any, world: Any, task: Task) -> Any:
     elif "mesh" in support:
         shape = rapier.Collider.trimesh(support["mesh"]["vertices"], support["mesh"]["triangles"])
     else:
-        # Not a large box: in single precision its corners are too far off for the edge of a disc.
+        # Not a box: on one, of whatever size, the edge of a disc loses energy and does not roll.
         shape = rapier.Collider.halfspace((0.0, 0.0, 1.0))
     # Of two coefficients the larger counts, and those of the bodies are their own.
     shape = shape.friction(0.0).restitution(0.0).friction_combine_rule(rapier.CoefficientCombineRule.MAX)
