@@ -261,6 +261,7 @@ CAUSES = [  # engine, case, step, the setting that has an error, the one that ta
     ("ode", "billiard-swerve", 1e-3, "best", "friction along the slip"),
     ("ode", "diagonal-box", 1e-3, "best", "friction along the slip"),
     ("ode", "bounce-with-spin", 1e-4, "best", "contacts that do not yield"),
+    ("ode", "hinged-turntable-tilted", 1e-4, "best", "double precision"),
     ("rapier", "pushed-box", 1e-3, "best", "friction of all points at once, else best"),
     ("rapier", "coin-in-a-circle", 1e-4, "best", "stiff contacts, one substep, else best"),
     ("rapier", "bounce-with-spin", 1e-4, "as shipped", "contacts as they touch"),
@@ -279,6 +280,16 @@ def test_a_cause_that_the_docs_name_makes_an_error_that_goes_with_it(
         pytest.skip(f"{name} is not installed: `trundle score --engine {name}` does it")
     there, gone = (error_of(of, answer).worst for answer in answered(name, of, step, with_it, without))
     assert gone < there / 10
+
+
+@pytest.mark.skipif("ode" not in INSTALLED, reason="ode is not installed: `trundle score --engine ode` does it")
+def test_what_single_precision_leaves_is_called_its_floor() -> None:
+    single, double = "as shipped", "double precision, else as shipped"
+    answers = [answered("ode", "hinged-turntable", step, single, double) for step in (1e-2, 1e-3, 1e-4)]
+    errors = [[error_of("hinged-turntable", answer).worst for answer in pair] for pair in answers]
+    of_one, of_other = zip(*errors, strict=True)
+    (cell,) = Score(rows(*of_one) + rows(*of_other, setting=double, of=single)).profiles
+    assert (cell.name, cell.cause) == ("float32 floor", double)
 
 
 @pytest.mark.parametrize("name", [name for name in INSTALLED if name in ("dart", "pybullet")])

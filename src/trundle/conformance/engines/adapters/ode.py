@@ -12,8 +12,8 @@ _STILL = 1e-5  # m/s, below which the direction of slipping is rounding
 
 def run(task: Task) -> Task:
     """Answer one task."""
-    from panda3d import core, ode
-
+    setting = task["setting"]
+    core, ode, name = _library(double=setting.get("double", False))
     refuse(
         task,
         {
@@ -21,7 +21,6 @@ def run(task: Task) -> Task:
             "driven": "it has no body of prescribed velocity",
         },
     )
-    setting = task["setting"]
     world = ode.OdeWorld()
     world.setGravity(*task["gravity"])
     for name, value in setting.get("world", {}).items():
@@ -62,7 +61,18 @@ def run(task: Task) -> Task:
         ]
 
     turn = None if hinge is None else lambda: (hinge.getAngle(), table.getAngularVel()[2])
-    return march(task, f"ODE (Panda3D {core.PandaSystem.getVersionString()})", step, read, turn)
+    return march(task, name, step, read, turn)
+
+
+def _library(*, double: bool) -> tuple[Any, Any, str]:
+    """Return what has vectors, what has ODE, and its name."""
+    if double:
+        from . import ode_in_double
+
+        return ode_in_double.core, ode_in_double.ode, "ODE (of dartpy's wheel)"
+    from panda3d import core, ode
+
+    return core, ode, f"ODE (Panda3D {core.PandaSystem.getVersionString()})"
 
 
 def _turn(contact: Any, surface: Any, body: Any, under: Any, force: Any) -> None:
