@@ -9,6 +9,7 @@ import ast
 import math
 import re
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from ..errors import InvalidValueError
@@ -72,7 +73,11 @@ class Expression:
 
     def at(self, **values: Scalar) -> Scalar:
         """Return the value where the variables have the given values: numbers, arrays or symbols."""
-        return _value(self.tree, values, namespace(tuple(values.values()), _numbers(self.tree)))
+        return _value(self.tree, values, namespace(tuple(values.values()), self._constants))
+
+    @cached_property
+    def _constants(self) -> tuple[Any, ...]:
+        return _numbers(self.tree)
 
     @property
     def variables(self) -> frozenset[str]:

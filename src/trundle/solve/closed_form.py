@@ -203,6 +203,8 @@ class ClosedFormSegment:
 def _spread(each: Sequence[Any], sizes: list[int]) -> Any:
     """Return one value like several of one kind: of what differs an array, each repeated as often as its size says."""
     first = each[0]
+    if len(each) == 1:  # a form keeps what it has worked out
+        return first
     if isinstance(first, ClosedForm):
         numbers = {part.name: [getattr(one, part.name) for one in each] for part in fields(first)}  # type: ignore[arg-type]
         return replace(first, **{name: _spread(values, sizes) for name, values in numbers.items()})  # type: ignore[type-var]
