@@ -143,7 +143,7 @@ class _Effort:
 
     def look(self, left: float) -> None:
         """Decide by how many more steps there seem to be in the time left to the run, s."""
-        coming = self.steps * left / self.lasted if self.lasted > 0 else 0.0
+        coming = min(self.steps * left / self.lasted, _PATIENCE["steps"]) if self.lasted > 0 else 0.0
         careful = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost
         if coming > _WORTH_UNROLLING * self.cost:
             self.level = UNROLLED
