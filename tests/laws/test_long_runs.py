@@ -169,3 +169,17 @@ def test_a_quaternion_means_the_same_rotation_as_scipys() -> None:
     ours = Quaternion(*q).matrix()
     theirs = Rotation.from_quat(q, scalar_first=True).as_matrix()
     assert np.allclose([list(row) for row in ours.rows], theirs, rtol=0, atol=EXACT(4, 1))
+
+
+def test_short_steps_where_slip_begins_are_no_reason_to_unroll_its_loops() -> None:
+    # Its hundred first steps led over a tenth of a microsecond, and half a minute went into code for the rest.
+    effort = taylor._Effort(cost=1000)
+    effort.after(100, 1e-7)
+    effort.look(left=1.0)
+    assert effort.level == taylor.WITH_CARE
+    effort.after(4900, 1e-3)
+    effort.look(left=1.0)
+    assert effort.level == taylor.WITH_CARE  # five thousand for all of a second
+    effort.after(50_000, 1e-3)
+    effort.look(left=1.0)
+    assert effort.level == taylor.UNROLLED  # as many again for each of the milliseconds to come

@@ -121,3 +121,21 @@ def test_the_first_moment_of_slip_is_followed_in_few_steps(which: str, monkeypat
     tr.simulate(system, system.place(), duration=0.4, every=0.1, method="runge-kutta")
     assert counts
     assert max(count["rates"] for count in counts) <= 32  # of which a step takes fifteen
+    # Eight looks at each of one or two steps: where it is handed on needs no more digits than the law itself has left.
+    assert max(count["event_functions"] for count in counts) <= 26
+
+
+@pytest.mark.parametrize("which", GIVES_WAY)
+def test_where_the_first_moment_is_handed_on_does_not_show(which: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    system = tr.RollingSystem(GIVES_WAY[which], SHAKEN)
+
+    def run() -> tr.Trajectory:
+        return tr.simulate(system, system.place(), duration=0.1, every=0.01, method="runge-kutta")
+
+    about = run()
+    monkeypatch.setattr(CreepingLaw, "handed_on", ())
+    to_the_last_digit = run()
+    assert "slip" in {event.kind for event in about.events}
+    for name in ("position", "velocity", "angular_velocity", "orientation"):
+        apart = abs(about.data[name] - to_the_last_digit.data[name]).max() / abs(about.data[name]).max()
+        assert float(apart) <= 1e-12

@@ -50,6 +50,7 @@ class CreepingLaw(SlippingLaw):
 
     variables = (*CONTACT, "speed")
     brief = True
+    handed_on = (*GROWN, "turned")
     ways: dict[Any, tuple[Vector, Scalar, Scalar]] | None = None  # worked out while it is traced
 
     def __init__(

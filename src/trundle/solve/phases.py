@@ -6,7 +6,9 @@ the slip, the normal force, the friction cone.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator, Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Protocol
@@ -277,7 +279,7 @@ def _behind_it(system: RollingSystem, now: PhaseStart, bends: Sequence[Kink]) ->
 
 
 class _Record:
-    """The samples of a run as its pieces come in; small ones that go on in one and the same way are completed together.
+    """The samples of a run as its pieces come in; many small ones by one law are completed together.
 
     Parameters
     ----------
@@ -289,50 +291,86 @@ class _Record:
 
     def __init__(self, system: RollingSystem, most: int) -> None:
         self.system, self.recording, self.form = system, Recording(most), None
-        self.waiting: list[tuple[Law, Segment]] = []
-        self.rows = 0  # of those that wait
+        self.waiting: list[tuple[Law, Segment] | Samples] = []
+        self.rows = 0  # of what waits
 
     def take(self, law: Law, piece: Segment) -> None:
-        """Take a piece of a stretch, to be completed now or with those that follow."""
+        """Take a piece of a stretch, to be completed with others."""
         if not piece.times.size and piece.known is None and self.recording.most > 1:
             return  # to complete nothing takes as long as to complete a sample
-        if self.waiting and not self._goes_on(law, piece):
-            self._complete()
-        self.waiting.append((law, piece))
-        self.rows += piece.times.size
+        self._wait((law, piece), piece.times.size)
 
     def put(self, samples: Samples) -> None:
         """Take samples that are complete."""
-        self._complete()
-        self.recording.add(samples)
+        self._wait(samples, samples.time.size)
 
     def samples(self, events: tuple[Event, ...]) -> Samples:
         """Return all of them."""
         self._complete()
         return self.recording.samples(events, self.form)
 
-    def _goes_on(self, law: Law, piece: Segment) -> bool:
-        """Tell whether a piece can be completed with those that wait."""
-        before, last = self.waiting[-1]
-        if self.rows + piece.times.size > AT_ONCE:
-            return False
-        return law is before if last.known is None else last.known.joins(piece.known)
+    def _wait(self, part: tuple[Law, Segment] | Samples, rows: int) -> None:
+        if self.waiting and self.rows + rows > AT_ONCE:
+            self._complete()
+        self.waiting.append(part)
+        self.rows += rows
 
     def _complete(self) -> None:
-        if not self.waiting:
-            return
-        law, (first, *others) = self.waiting[0][0], [piece for _, piece in self.waiting]
+        """Complete what waits, each group at once, and put it in the order of time."""
+        groups: dict[Any, list[int]] = {}
+        for i in range(len(self.waiting)):
+            groups.setdefault(self._group(i, next(reversed(groups), None)), []).append(i)
+        found = [self._completed([self.waiting[i] for i in group]) for group in groups.values()]
+        places = [np.repeat(group, [_rows(self.waiting[i]) for i in group]) for group in groups.values()]
         self.waiting, self.rows = [], 0
-        if first.known is not None:
-            samples = first.known.record(self.system, [first, *others])
-        elif others:
-            times = np.concatenate([first.times, *(one.times for one in others)])
-            states = np.concatenate([first.states, *(one.states for one in others)])
-            samples = law.record(self.system, times, states)
-        else:
-            samples = law.record(self.system, first.times, first.states)
-        self.form = samples.form if self.form is None else self.form
-        self.recording.add(samples)
+        if found and self.form is None:
+            self.form = found[0].form
+        if len(found) == 1:
+            self.recording.add(found[0])
+        elif found:
+            self.recording.add(Samples.joined(found).part(np.argsort(np.concatenate(places), kind="stable")))
+
+    def _group(self, place: int, last: Any) -> Any:
+        """Return what is the same for pieces that are completed together, given that of the latest new one.
+
+        Numbers of a law of its own, such as where it began, may be others in each. What knows more than its law is
+        completed with its neighbours.
+        """
+        part = self.waiting[place]
+        if isinstance(part, Samples):
+            return place
+        law, piece = part
+        if piece.known is not None:
+            before = self.waiting[place - 1] if place else None
+            known = before[1].known if isinstance(before, tuple) else None
+            return last if known is not None and known.joins(piece.known) else place
+        structure = type(law), tuple((name, value) for name, value in vars(law).items() if not isinstance(value, float))
+        try:
+            hash(structure)
+        except TypeError:  # a part of one's own that cannot be hashed
+            return "law", id(law)
+        return structure
+
+    def _completed(self, parts: list[Any]) -> Samples:
+        """Return the samples of a group."""
+        if isinstance(parts[0], Samples):
+            return parts[0]
+        law, pieces = parts[0][0], [piece for _, piece in parts]
+        if pieces[0].known is not None:
+            return pieces[0].known.record(self.system, pieces)
+        if len(pieces) == 1:
+            return law.record(self.system, pieces[0].times, pieces[0].states)
+        times, states = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("times", "states"))
+        together, counts = copy(law), [piece.times.size for piece in pieces]
+        for name, value in vars(law).items():
+            own = [vars(one)[name] for one, _ in parts]
+            if isinstance(value, float) and own.count(value) < len(own):
+                setattr(together, name, np.repeat(own, counts))
+        return together.record(self.system, times, states)
+
+
+def _rows(part: tuple[Law, Segment] | Samples) -> int:
+    return part.time.size if isinstance(part, Samples) else part[1].times.size
 
 
 def _across(
@@ -431,8 +469,11 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
     many = events[-_MANY:]
     if len(many) < _MANY or many[-1].after is None:
         return
-    span = many[-1].time - many[0].time
-    if span < _MANY_WITHIN * transitions.moment(system, many[-1].after, many[-1].contact):
+    span, last = many[-1].time - many[0].time, many[-1].after
+    reach = math.dist(last.position, many[-1].contact or last.position)
+    if many[-1].contact and span * math.hypot(*last.velocity) >= _MANY_WITHIN * reach:
+        return  # as at nearly every event: then the time in which the motion changes need not be worked out
+    if span < _MANY_WITHIN * transitions.moment(system, last, many[-1].contact):
         kinds = ", ".join(dict.fromkeys(event.kind for event in many))
         raise SolverError(
             f"The contact chatters at t = {many[-1].time:.9g} s: {_MANY} events ({kinds}) within {span:.2g} s. Does a "

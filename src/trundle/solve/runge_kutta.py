@@ -37,6 +37,7 @@ _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutta method"}  # an hour, and seconds
 _CLOSE = 1e-9  # share of the time by which a step may begin before an instant at which the law is singular
 _BRIEF = 1e5  # steps of a law that mostly holds for an instant only: some seconds
+_LOOSELY = 1e-5  # share of what a step has gone, to which a loose stop is looked for
 _FIRST_STEP = 1e-12  # s
 _RATES = 15  # evaluations of the law in a step of SciPy's
 OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
@@ -183,7 +184,7 @@ def _integrated(
 
         # What is briefly followed is handed on: no finer than the clock shows its end.
         nearest = max(1e-300, 0.5 * math.ulp(begin)) if law.brief else 1e-300
-        yield from _follow(onward, y0, end, rows, stops, traced.names, nearest)
+        yield from _follow(onward, y0, end, rows, stops, traced.names, law.handed_on, nearest)
     except StuckError as stuck:
         raise SolverError(_broken(stuck, begin)) from None
     except (ZeroDivisionError, ValueError, OverflowError) as error:
@@ -276,14 +277,16 @@ def _follow(
     rows: _Rows | _Paths,
     stops: Any,
     names: tuple[str, ...],
+    handed_on: tuple[str, ...],
     nearest: float,
 ) -> Iterator[Segment]:
     """Go along steps to the end or the first stop; states are read off the steps' own polynomials."""
     yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size), count=0))
+    loose = frozenset(i for i, name in enumerate(names) if name in handed_on)
     first, paths = stops(0.0, y0), onward(0.0, y0, end)
     try:
         while (path := next(paths, None)) is not None:
-            found = None if path.plain else _first_stop(path, stops, nearest)
+            found = None if path.plain else _first_stop(path, stops, nearest, loose)
             if found is not None and names[found[1]] in _SINGULAR and found[0] > path.t_old + _CLOSE * found[0]:
                 # A step across an instant at which the law is singular says little of the way there.
                 halfway, y = 0.5 * (path.t_old + found[0]), path(np.array([path.t_old]))[:, 0]
@@ -402,8 +405,13 @@ def _broken(stuck: StuckError, begin: float) -> str:
     )
 
 
-def _first_stop(path: Path, stops: Any, nearest: float = 1e-300) -> tuple[float, int] | None:
-    """Return the first instant in a step at which a stop falls through zero, also where it rises again at once."""
+def _first_stop(
+    path: Path, stops: Any, nearest: float = 1e-300, loose: frozenset[int] = frozenset()
+) -> tuple[float, int] | None:
+    """Return the first instant in a step at which a stop falls through zero, also where it rises again at once.
+
+    Of a loose one, about where it falls from one look to the next.
+    """
     looks = path.t_old + (path.t - path.t_old) * places()
     looks[-1] = path.t
     values = np.array([stops(t, y) for t, y in zip(looks, path(looks).T, strict=True)])
@@ -421,7 +429,11 @@ def _first_stop(path: Path, stops: Any, nearest: float = 1e-300) -> tuple[float,
                 value = float(stops(t + aside, path(t + aside))[which])
             return value
 
-        fall = _fall(at, looks, values[:, which], np.inf if found is None else found[0], nearest)
+        before = np.inf if found is None else found[0]
+        if which in loose:
+            fall = _loose_fall(at, looks, values[:, which], before)
+        else:
+            fall = _fall(at, looks, values[:, which], before, nearest)
         if fall is not None:
             found = fall, which
     return found
@@ -450,6 +462,15 @@ def _fall(
         return None
     first = int(falls[0])
     return _sooner(function, looks[first], looks[first + 1], before, nearest)
+
+
+def _loose_fall(function: Callable[[float], float], looks: Array, values: Array, before: float) -> float | None:
+    """Return about where a function falls through zero from one look to the next, if it is before an instant."""
+    falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
+    if not falls.size:
+        return None
+    begin, end = looks[falls[0]], looks[falls[0] + 1]
+    return _sooner(function, begin, end, before, _LOOSELY * (end - looks[0]))
 
 
 def _sooner(

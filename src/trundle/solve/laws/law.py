@@ -52,6 +52,8 @@ class Law:
         Whether its numbers are those of another law with their derivatives.
     unwatched : int
         How many of the last numbers have no say in how long a step is.
+    handed_on : tuple of str
+        Events at which another law goes on with the same motion: an instant about there is as good.
     lasts : float
         About how long a brief law holds, s: a step that is much longer is taken for nothing.
 
@@ -69,6 +71,7 @@ class Law:
     unwatched: int = 0
     turning: str = "free"
     variational: bool = False
+    handed_on: tuple[str, ...] = ()
     lasts: float = math.inf
 
     def __init__(self, weightless: bool = False) -> None:
