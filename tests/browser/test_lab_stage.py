@@ -60,7 +60,7 @@ def is_thrown_to_the_left(bench: Bench) -> None:
 
 
 def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
-    bench.tool("Move the ball")
+    bench.tool("Move it")
     x, y = bench.stage.ball()
     bench.stage.drag((-60.0, -40.0))
 

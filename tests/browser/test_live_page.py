@@ -91,9 +91,47 @@ def test_a_number_is_typed_and_kept_within_the_slider(file: Path, opened: OpenPa
     field.fill("200")
     field.press("Enter")
     expect(field).to_have_value("80")
-    field.fill("much")
+    told = page.get_by_role("alert").filter(has_text="Rate")
+    expect(told).to_have_text("“Rate” goes from 10 to 80 rpm: 200 rpm is too large, and the most is taken.")
+    field.fill("1")
     field.press("Enter")
-    expect(field).to_have_value("80")
+    expect(field).to_have_value("10")
+    expect(told).to_have_text("“Rate” goes from 10 to 80 rpm: 1 rpm is too small, and the least is taken.")
+    field.fill("20 rpm")
+    field.press("Enter")
+    expect(field).to_have_value("20")
+    expect(told).to_have_count(0)
+
+
+WRONG = {
+    "en": {
+        "banana": "“Rate” needs a number in rpm, and “banana” is none. It stays at 33.3 rpm.",
+        "": "“Rate” needs a number; the box was empty. It stays at 33.3 rpm.",
+        "99.5": "“Rate” goes from 10 to 80 rpm: 99.5 rpm is too large, and the most is taken.",
+    },
+    "de": {
+        "1.000,5": "„Winkel\u00adgeschwindigkeit“ braucht eine Zahl in U/min, und „1.000,5“ ist keine. Es bleibt bei 33,3 U/min.",
+        "": "„Winkel\u00adgeschwindigkeit“ braucht eine Zahl; das Feld war leer. Es bleibt bei 33,3 U/min.",
+        "99,5": "„Winkel\u00adgeschwindigkeit“ geht von 10 bis 80 U/min: 99,5 U/min ist zu groß, es gilt der größte Wert.",
+    },
+}
+
+
+@pytest.mark.parametrize("language", WRONG)
+def test_what_is_no_number_is_said_in_the_words_of_its_label(file: Path, opened: OpenPage, language: str) -> None:
+    page = opened(file, locale=language)
+    expect(page.locator(".live-happens")).to_contain_text("m/s")
+    for typed, said in WRONG[language].items():
+        field = page.locator(".live-value input").first
+        field.fill(typed)
+        field.press("Enter")
+        told = page.get_by_role("alert").first
+        expect(told).to_have_text(said)
+        expect(field).to_have_attribute("aria-describedby", told.get_attribute("id") or "")
+        assert violations(page) == []
+        page.locator('.live-slider input[type="range"]').first.press("ArrowLeft")
+        expect(page.locator(".live-message").first).to_be_empty()
+        page.locator(".live-back").click()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
