@@ -103,6 +103,7 @@ def test_a_number_is_typed_and_kept_within_the_slider(file: Path, opened: OpenPa
     expect(told).to_have_count(0)
 
 
+RATE = "Winkel\u00adgeschwindigkeit"
 WRONG = {
     "en": {
         "banana": "“Rate” needs a number in rpm, and “banana” is none. It stays at 33.3 rpm.",
@@ -110,9 +111,9 @@ WRONG = {
         "99.5": "“Rate” goes from 10 to 80 rpm: 99.5 rpm is too large, and the most is taken.",
     },
     "de": {
-        "1.000,5": "„Winkel\u00adgeschwindigkeit“ braucht eine Zahl in U/min, und „1.000,5“ ist keine. Es bleibt bei 33,3 U/min.",
-        "": "„Winkel\u00adgeschwindigkeit“ braucht eine Zahl; das Feld war leer. Es bleibt bei 33,3 U/min.",
-        "99,5": "„Winkel\u00adgeschwindigkeit“ geht von 10 bis 80 U/min: 99,5 U/min ist zu groß, es gilt der größte Wert.",
+        "1.000,5": f"„{RATE}“ braucht eine Zahl in U/min, und „1.000,5“ ist keine. Es bleibt bei 33,3 U/min.",
+        "": f"„{RATE}“ braucht eine Zahl; das Feld war leer. Es bleibt bei 33,3 U/min.",
+        "99,5": f"„{RATE}“ geht von 10 bis 80 U/min: 99,5 U/min ist zu groß, es gilt der größte Wert.",
     },
 }
 

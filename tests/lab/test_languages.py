@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.tracks.examples import EXAMPLES, Example, written
 
 import trundle as tr
 from trundle.analysis.geometry import PathScenario
@@ -26,8 +27,6 @@ from trundle.mechanics.shapes.base import Shape
 from trundle.scenario import files
 from trundle.tracks.film.result import _PARTS
 from trundle.views.scene import scene_of
-
-from tests.tracks.examples import EXAMPLES, Example, written
 
 from .untold import untold, words_in
 
@@ -87,8 +86,10 @@ DAMAGED = {
     "gaps": "t (s),x (cm)\n0,1\n1,\n2,3\n3,4\n7,5\n8,6\n",
     "one": "t (s),x (cm)\n0,1\n",
     "uneven": "t (ms),x (cm),y (cm)\n" + "".join(f"{i * i},1,2\n" for i in range(9)),
-    "words": "time (s),x (m),time of day\n" + "".join(f"{i / 10},1,\n" for i in range(60)) + "6.1,?!,\n6.1,2,\n,2,\n6.3,2\n6.2,3,\n6.2,4,\n",
-}  # fmt: skip
+    "words": "time (s),x (m),time of day\n"
+    + "".join(f"{i / 10},1,\n" for i in range(60))
+    + "6.1,?!,\n6.1,2,\n,2,\n6.3,2\n6.2,3,\n6.2,4,\n",
+}
 
 
 @pytest.mark.parametrize("name", DAMAGED)
