@@ -16,7 +16,7 @@ from trundle.lab.challenges import on_site
 from trundle.live import live_page, site_of
 
 from .axe import violations
-from .bench import Stage, eventually
+from .bench import Stage, colours, eventually
 from .launching import PATIENCE, PHONE, SMALL
 from .watching import Watch
 
@@ -146,6 +146,51 @@ def test_on_a_phone_nothing_runs_over_the_edge(file: Path, opened: OpenPage) -> 
     page = opened(file, viewport=PHONE)
     expect(headline(page)).to_contain_text("Ran off")
     assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A page whose numbers need powers of ten."""
+    path = tmp_path_factory.mktemp("live") / "page.html"
+    path.write_bytes(live_page(tr.Scenario.load("rattleback-with-losses")))
+    return path
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_every_number_fits_its_box_and_is_read_again(small: Path, opened: OpenPage, language: str) -> None:
+    page = opened(small, viewport=PHONE, locale=language)
+    expect(page.locator(".live-happens")).to_contain_text("m/s")
+    boxes = page.locator(".live-value input")
+    assert any("10⁻" in one.input_value() for one in boxes.all())
+    for one in boxes.all():
+        assert one.evaluate("element => element.scrollWidth <= element.clientWidth"), one.input_value()
+        written = one.input_value()
+        one.fill(f"{written} ")
+        one.press("Enter")
+        expect(one).to_have_value(written)
+    assert "".join(page.locator(".live-message").all_inner_texts()) == ""
+    assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
+def test_on_paper_it_is_light_and_has_a_picture_of_the_stage(file: Path, opened: OpenPage) -> None:
+    page = opened(file, color_scheme="dark")
+    expect(headline(page)).to_contain_text("Ran off")
+    printed, root = page.locator(".page-printed"), page.locator(":root")
+    expect(printed).to_have_count(0)
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    expect(printed).to_be_visible()
+    expect(root).to_have_attribute("data-theme", "light")
+    box = printed.bounding_box()
+    assert box
+    assert colours(Stage(page, page).picture(box)) > 100, "the picture is blank"
+    for hidden in (".tr-host", ".live-back", ".page-theme"):
+        expect(page.locator(hidden)).to_be_hidden()
+    assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    page.emulate_media(media="screen")
+    expect(printed).to_have_count(0)
+    expect(root).to_have_attribute("data-theme", "dark")
 
 
 def test_a_site_is_walked_from_the_gallery_through_the_tour(opened: OpenPage, tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ import { createStage, playUnlessCalm, told } from '../parts/stage'
 import { createFilm, isFilm } from './film'
 import { createPlot } from './plot'
 import { clausesSaid, createReading, type How } from './reading'
-import { marked, report } from './report'
+import { report } from './report'
 import { createShowing } from './showing'
 
 const BENCH = '(bench)'
