@@ -19,7 +19,8 @@ SHOWN = ["tilted-turntable", "rattleback", "chaplygin-ball", "billiard-draw", "r
 OVER = """() => {
     const headline = document.querySelector('.stage-headline')
     const own = headline.getBoundingClientRect()
-    const others = '.stage-tools, .stage-took, .stage-hint, .stage-stale, .tr-legend, .tr-bar, .tr-row, .fold, .tabs, .tab-panels, .controls, .bar'
+    const stage = ['.stage-tools', '.stage-took', '.stage-hint', '.stage-stale', '.tr-legend', '.tr-bar', '.tr-row']
+    const others = [...stage, '.fold', '.tabs', '.tab-panels', '.controls', '.bar'].join()
     const shares = (box) => Math.min(own.right, box.right) - Math.max(own.left, box.left) > 1
         && Math.min(own.bottom, box.bottom) - Math.max(own.top, box.top) > 1
     return [...document.querySelectorAll(others)]
