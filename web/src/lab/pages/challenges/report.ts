@@ -34,7 +34,7 @@ export async function drawReport(host: HTMLElement, app: App): Promise<void> {
         { class: 'sheet-names' },
         named(REPORT.name, 'name', notebook),
         named(REPORT.group, 'group', notebook),
-        h('p', {}, `${REPORT.date}: ${new Date().toLocaleDateString(language(), { dateStyle: 'long' })}`),
+        h('p', {}, `${REPORT.date}: ${new Date().toLocaleDateString(language())}`),
       ),
       h(
         'p',
