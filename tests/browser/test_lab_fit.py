@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
+from .bench import Bench
 from .launching import LAPTOP, PHONE
 from .screenshots import PAGES
 from .test_lab_access import STAGED, come_to_rest, settle
@@ -115,6 +116,48 @@ def test_at_four_times_the_size_everything_is_reached(kept: Page) -> None:
     field.scroll_into_view_if_needed()
     shown = box(kept, '.controls [data-path="body.radius"]')
     assert 0 <= shown["y"] < FOUR_TIMES["height"]
+
+
+# Formulas that are wider than what holds them, or are cut by it.
+CUT_FORMULAS = """() => [...document.querySelectorAll('.math-block, .math')].filter((one) => {
+    if (!one.checkVisibility()) return false
+    const drawn = one.querySelector('.katex-html')
+    const parts = drawn ? [drawn, ...drawn.querySelectorAll('.katex-base')] : [one]
+    let [left, right] = [0, document.documentElement.clientWidth]
+    for (let at = one; at; at = at.parentElement) {
+        if (getComputedStyle(at).overflowX === 'visible') continue
+        left = Math.max(left, at.getBoundingClientRect().left)
+        right = Math.min(right, at.getBoundingClientRect().right)
+    }
+    const boxes = parts.map((part) => part.getBoundingClientRect())
+    return boxes.some((box) => box.right > right + 1 || box.left < left - 1)
+}).map((one) => one.querySelector('annotation')?.textContent)"""
+# The law that is computed by, and closed forms with long ones.
+LAWS = ("rattleback", "tilted-turntable", "loop-the-loop", "roll-off-a-sphere-slipping", "roll-figure-eight")
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP, HALL], ids=["phone", "laptop", "projector"])
+def test_a_long_law_goes_on_in_a_new_line(size: Any, visitor: Visitor) -> None:
+    page = visitor.open(size=size, drawn=False, cards=False)
+    bench = Bench(page)
+    if size == HALL:
+        page.keyboard.press("p")
+        expect(page.locator(":root[data-projector]")).to_be_attached()
+        page.keyboard.press(".")
+    page.get_by_role("tab", name="Numbers").click()
+    cut, lines = {}, []
+    for name in LAWS:
+        bench.open(f"#/bench?name={name}")
+        expect(page.locator(".formula-card")).to_be_visible()
+        page.wait_for_timeout(300)
+        if found := page.evaluate(CUT_FORMULAS):
+            cut[name] = found
+        tops = page.locator(".formula-lines .math-block").first.locator(".katex-base")
+        lines.append(
+            len(set(tops.evaluate_all("all => all.map(one => Math.round(one.getBoundingClientRect().bottom / 12))")))
+        )
+    assert cut == {}
+    assert max(lines) > 1, "no law was long enough to try it"
 
 
 FITTED = [name for name in PAGES if name not in ("bench-bowl", "bench-coin", "tour-1", "tour-2", "tour-5", "tour-6")]

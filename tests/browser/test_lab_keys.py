@@ -28,7 +28,7 @@ def test_the_arrow_keys_move_the_start_and_change_its_velocity_and_enter_throws(
     bench = Bench(page)
     place, velocity = start(bench)
     radius = float(tr.Scenario.load(NAME).system().body.radius)
-    bench.tool("Move the ball")
+    bench.tool("Move it")
     bench.stage.canvas.focus()
     for _ in range(3):
         page.keyboard.press("ArrowLeft")
@@ -72,7 +72,7 @@ def test_an_arrow_key_nudges_while_it_runs(page: Page) -> None:
 
 def test_keys_of_other_controls_stay_theirs(page: Page) -> None:
     bench = Bench(page)
-    bench.tool("Move the ball")
+    bench.tool("Move it")
     place, _ = start(bench)
     film = page.get_by_role("slider", name="Time", exact=True)
     film.focus()

@@ -100,6 +100,19 @@ def test_what_the_file_does_not_say_is_asked(visitor: Visitor) -> None:
     expect(page.get_by_test_id("said")).to_contain_text("a pixel of 0.5 mm")
 
 
+def test_a_track_is_told_in_the_language_of_the_page(visitor: Visitor) -> None:
+    page = visitor.open("?lang=de#/measure", drawn=False)
+    content = b"time (ms),x (cm),place\n0,1.5,\n1,\n2,2,\n3,3,\n"
+    file = {"name": "time.csv", "mimeType": "", "buffer": content}
+    page.get_by_test_id("file").set_input_files(file, timeout=PATIENCE)
+    said = page.get_by_test_id("said").locator("p")
+    expect(said.nth(0)).to_have_text(
+        "time.csv: t aus Spalte time (ms) in ms, x in cm, 3 Zeilen, 1 Lücke (1 Bild), 1000 Bilder pro Sekunde."
+    )
+    expect(said.nth(1)).to_have_text("1 Zeile wurde weggelassen: Zeile 3 (2 Zellen bei 3 Überschriften).")
+    expect(said.nth(2)).to_have_text("place wurde weggelassen: nicht gebraucht.")
+
+
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda one: one.id)
 def test_each_format_is_read_or_asked_about(example: Example, page_of_files: Page, staying: Visitor) -> None:
     """A file of each format: what has to be known is asked for in the words of the page, until it is read."""

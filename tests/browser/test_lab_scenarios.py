@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from playwright.sync_api import expect
 import trundle as tr
 from trundle.scenario import files
 
-from .bench import Bench, Stage, colours, eventually
+from .bench import Bench, Stage, colours, decoded, eventually
 from .visiting import Visitor
 
 TOLD = 2e-5  # m: what is drawn has single precision and is told to a hundredth of a millimetre
@@ -55,10 +56,29 @@ def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench) -> None:
         starts(stage)
 
     eventually(page, moved)
+    assert page.locator(".toast-error").all_inner_texts() == []
 
 
 def starts(stage: Stage) -> None:
     assert stage.drawn().time == 0.0
+
+
+@pytest.mark.parametrize("name", [name for name in files.names() if files.rolls_along_path(files.tables_of(name))])
+def test_a_number_of_a_rolled_path_is_changed_though_it_has_no_start(name: str, bench: Bench) -> None:
+    bench.open(f"#/bench?name={name}")
+    page = bench.page
+    page.locator(f"section.stage[data-shown={json.dumps(files.title_of(name))}]").wait_for()
+    radius = bench.box("body.radius")
+    radius.fill("31 mm")
+    radius.press("Enter")
+    expect(page).to_have_url(re.compile(r"s="))
+
+    def told() -> None:
+        assert decoded(page.url.split("s=")[1])["body"]["radius"] == "31 mm"
+
+    eventually(page, told)
+    expect(page.locator(".controls")).to_have_attribute("data-ends", files.title_of(name), timeout=60_000)
+    assert page.locator(".toast-error").all_inner_texts() == []
 
 
 @pytest.mark.parametrize("name", ["roll-figure-eight", "bouncing-ball-with-backspin", "ball-in-a-turning-bowl"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from typing import Any
 
@@ -60,7 +61,7 @@ def is_thrown_to_the_left(bench: Bench) -> None:
 
 
 def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
-    bench.tool("Move the ball")
+    bench.tool("Move it")
     x, y = bench.stage.ball()
     bench.stage.drag((-60.0, -40.0))
 
@@ -281,3 +282,30 @@ def test_each_frame_shows_the_place_as_the_package_does(name: str, frame: str, l
 
 def stands_at(bench: Bench, place: np.ndarray) -> None:
     assert bench.stage.drawn().place == pytest.approx(tuple(place), abs=2e-5)
+
+
+NOUNS = [
+    ("coin-in-a-circle", "en", "the disc"),
+    ("rattleback", "en", "the ellipsoid"),
+    ("coin-in-a-circle", "de", "die Scheibe"),
+    ("rocking-half-cylinder", "de", "den Halbzylinder"),
+    ("tilted-turntable", "de", "die Kugel"),
+]
+
+
+@pytest.mark.parametrize(("name", "language", "noun"), NOUNS)
+def test_the_tools_say_what_lies_there(name: str, language: str, noun: str, visitor: Visitor) -> None:
+    page = visitor.open(f"?lang={language}#/bench?name={name}", drawn=False, cards=False)
+    Bench(page)
+    hint = page.locator(".stage-hint")
+    tools = page.locator(".stage-tools .tool")
+    for tool in tools.all():
+        if tool.get_attribute("data-tool") == "nudge" and "turntable" not in name:
+            continue
+        tool.click()
+        expect(hint).to_contain_text(noun)
+    if noun != "die Kugel":
+        said = " ".join(
+            [page.locator("section.stage").inner_text(), *(one.get_attribute("title") or "" for one in tools.all())]
+        )
+        assert not re.search(r"\bball\b|kugel", said, re.IGNORECASE), said

@@ -28,7 +28,7 @@ def bench(visitor: Visitor) -> Bench:
 
 
 def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench: Bench) -> None:
-    bench.tool("Move the ball")
+    bench.tool("Move it")
     x, y = bench.stage.ball()
     bench.stage.drag((-60.0, -50.0))
 

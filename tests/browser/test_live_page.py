@@ -16,7 +16,7 @@ from trundle.lab.challenges import on_site
 from trundle.live import live_page, site_of
 
 from .axe import violations
-from .bench import Stage, eventually
+from .bench import Stage, colours, eventually
 from .launching import PATIENCE, PHONE, SMALL
 from .watching import Watch
 
@@ -91,9 +91,48 @@ def test_a_number_is_typed_and_kept_within_the_slider(file: Path, opened: OpenPa
     field.fill("200")
     field.press("Enter")
     expect(field).to_have_value("80")
-    field.fill("much")
+    told = page.get_by_role("alert").filter(has_text="Rate")
+    expect(told).to_have_text("“Rate” goes from 10 to 80 rpm: 200 rpm is too large, and the most is taken.")
+    field.fill("1")
     field.press("Enter")
-    expect(field).to_have_value("80")
+    expect(field).to_have_value("10")
+    expect(told).to_have_text("“Rate” goes from 10 to 80 rpm: 1 rpm is too small, and the least is taken.")
+    field.fill("20 rpm")
+    field.press("Enter")
+    expect(field).to_have_value("20")
+    expect(told).to_have_count(0)
+
+
+RATE = "Winkel\u00adgeschwindigkeit"
+WRONG = {
+    "en": {
+        "banana": "“Rate” needs a number in rpm, and “banana” is none. It stays at 33.3 rpm.",
+        "": "“Rate” needs a number; the box was empty. It stays at 33.3 rpm.",
+        "99.5": "“Rate” goes from 10 to 80 rpm: 99.5 rpm is too large, and the most is taken.",
+    },
+    "de": {
+        "1.000,5": f"„{RATE}“ braucht eine Zahl in U/min, und „1.000,5“ ist keine. Es bleibt bei 33,3 U/min.",
+        "": f"„{RATE}“ braucht eine Zahl; das Feld war leer. Es bleibt bei 33,3 U/min.",
+        "99,5": f"„{RATE}“ geht von 10 bis 80 U/min: 99,5 U/min ist zu groß, es gilt der größte Wert.",
+    },
+}
+
+
+@pytest.mark.parametrize("language", WRONG)
+def test_what_is_no_number_is_said_in_the_words_of_its_label(file: Path, opened: OpenPage, language: str) -> None:
+    page = opened(file, locale=language)
+    expect(page.locator(".live-happens")).to_contain_text("m/s")
+    for typed, said in WRONG[language].items():
+        field = page.locator(".live-value input").first
+        field.fill(typed)
+        field.press("Enter")
+        told = page.get_by_role("alert").first
+        expect(told).to_have_text(said)
+        expect(field).to_have_attribute("aria-describedby", told.get_attribute("id") or "")
+        assert violations(page) == []
+        page.locator('.live-slider input[type="range"]').first.press("ArrowLeft")
+        expect(page.locator(".live-message").first).to_be_empty()
+        page.locator(".live-back").click()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -107,6 +146,51 @@ def test_on_a_phone_nothing_runs_over_the_edge(file: Path, opened: OpenPage) -> 
     page = opened(file, viewport=PHONE)
     expect(headline(page)).to_contain_text("Ran off")
     assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A page whose numbers need powers of ten."""
+    path = tmp_path_factory.mktemp("live") / "page.html"
+    path.write_bytes(live_page(tr.Scenario.load("rattleback-with-losses")))
+    return path
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_every_number_fits_its_box_and_is_read_again(small: Path, opened: OpenPage, language: str) -> None:
+    page = opened(small, viewport=PHONE, locale=language)
+    expect(page.locator(".live-happens")).to_contain_text("m/s")
+    boxes = page.locator(".live-value input")
+    assert any("10⁻" in one.input_value() for one in boxes.all())
+    for one in boxes.all():
+        assert one.evaluate("element => element.scrollWidth <= element.clientWidth"), one.input_value()
+        written = one.input_value()
+        one.fill(f"{written} ")
+        one.press("Enter")
+        expect(one).to_have_value(written)
+    assert "".join(page.locator(".live-message").all_inner_texts()) == ""
+    assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
+def test_on_paper_it_is_light_and_has_a_picture_of_the_stage(file: Path, opened: OpenPage) -> None:
+    page = opened(file, color_scheme="dark")
+    expect(headline(page)).to_contain_text("Ran off")
+    printed, root = page.locator(".page-printed"), page.locator(":root")
+    expect(printed).to_have_count(0)
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    expect(printed).to_be_visible()
+    expect(root).to_have_attribute("data-theme", "light")
+    box = printed.bounding_box()
+    assert box
+    assert colours(Stage(page, page).picture(box)) > 100, "the picture is blank"
+    for hidden in (".tr-host", ".live-back", ".page-theme"):
+        expect(page.locator(hidden)).to_be_hidden()
+    assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    page.emulate_media(media="screen")
+    expect(printed).to_have_count(0)
+    expect(root).to_have_attribute("data-theme", "dark")
 
 
 def test_a_site_is_walked_from_the_gallery_through_the_tour(opened: OpenPage, tmp_path: Path) -> None:

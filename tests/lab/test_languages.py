@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import re
+import textwrap
 from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.tracks.examples import EXAMPLES, Example, written
 
 import trundle as tr
 from trundle.analysis.geometry import PathScenario
@@ -18,8 +21,11 @@ from trundle.errors import TrundleError
 from trundle.lab.challenges import on_site
 from trundle.lab.deriving import derivation_of
 from trundle.lab.errors import refusal_of
+from trundle.lab.measuring import track_told
 from trundle.lab.parts import all_parts
+from trundle.mechanics.shapes.base import Shape
 from trundle.scenario import files
+from trundle.tracks.film.result import _PARTS
 from trundle.views.scene import scene_of
 
 from .untold import untold, words_in
@@ -46,6 +52,83 @@ def test_challenges_with_their_hints_and_notes_for_teachers() -> None:
 
 def test_labels_and_explanations_of_all_parts() -> None:
     assert untold(text for text in words_in(all_parts()) if re.search(r"[a-z] [a-z]", text)) == []
+
+
+def _kinds(of: type) -> Iterator[type]:
+    for kind in of.__subclasses__():
+        yield kind
+        yield from _kinds(kind)
+
+
+def test_nouns_of_all_bodies_alone_and_in_what_is_said_of_the_tools() -> None:
+    nouns = {noun for kind in (Shape, *_kinds(Shape)) for noun in _nouns(kind)}
+    assert {"ball", "disc", "ring", "ellipsoid", "body"} <= nouns
+    assert untold(f"{article}{noun}" for noun in sorted(nouns) for article in ("", "the ")) == []
+
+
+def _nouns(shape: type) -> Iterator[str]:
+    """Yield its noun, and those that its method returns instead."""
+    yield str(shape.noun)  # type: ignore[attr-defined]
+    if "noun_of" in vars(shape):
+        function = ast.parse(textwrap.dedent(inspect.getsource(shape.noun_of)))  # type: ignore[attr-defined]
+        returned = (node.value for node in ast.walk(function) if isinstance(node, ast.Return) and node.value)
+        yield from (text for value in returned for text in _template(value, {}))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.id)
+def test_what_is_said_of_a_track(example: Example, tmp_path: Path) -> None:
+    track = tr.read_track(written(example, tmp_path), **example.options)
+    if track.frame == "support":
+        assert untold(clause for clauses in track_told(track)["said"] for clause in clauses) == []
+
+
+DAMAGED = {
+    "gaps": "t (s),x (cm)\n0,1\n1,\n2,3\n3,4\n7,5\n8,6\n",
+    "one": "t (s),x (cm)\n0,1\n",
+    "uneven": "t (ms),x (cm),y (cm)\n" + "".join(f"{i * i},1,2\n" for i in range(9)),
+    "words": "time (s),x (m),time of day\n"
+    + "".join(f"{i / 10},1,\n" for i in range(60))
+    + "6.1,?!,\n6.1,2,\n,2,\n6.3,2\n6.2,3,\n6.2,4,\n",
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_what_is_said_of_a_track_with_gaps_and_other_faults(name: str, tmp_path: Path) -> None:
+    path = tmp_path / f"{name}.csv"
+    path.write_text(DAMAGED[name])
+    said = track_told(tr.read_track(path))["said"]
+    assert untold(clause for clauses in said for clause in clauses) == []
+    if name == "words":
+        assert "time of day" in str(said), "what stands in the file is not said in another language"
+
+
+def test_why_rows_are_left_out_and_how_a_camera_was_calibrated() -> None:
+    """The rarest reasons too, which no file of these tests has."""
+    told = [text for path in _files() if "tracks" in path.parts for text in _told_of_tracks(path.read_text("utf-8"))]
+    assert len(told) > 20
+    assert {"no ball", "no time", "its time is that of 3 3"} <= set(told)
+    written_out = {"not known: 3": "not known: --unit", "that of 3 3": "that of line 3"}
+    for short, whole in written_out.items():
+        told = [text.replace(short, whole) for text in told]
+    assert untold([*told, *_PARTS.values(), "calibrated by: the rim (83 points of its edge), to 0.3 px"]) == []
+
+
+def _told_of_tracks(source: str) -> Iterator[str]:
+    """Yield reasons why something is left out, and the lines about a camera."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+            at = {"Rejected": 1, "leave_out": 1, "_leave": 2}.get(name)
+            if at is not None and at < len(node.args):
+                yield from _template(node.args[at], {})
+        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Subscript):
+            if getattr(node.targets[0].value, "attr", "") in ("rejected", "left_out"):
+                yield from _template(node.value, {})
+        elif isinstance(node, ast.FunctionDef) and node.name == "_told":
+            pairs = [one.elts for one in ast.walk(node) if isinstance(one, ast.Tuple) and len(one.elts) == 2]
+            for name, said in pairs:
+                if isinstance(name, ast.Constant):
+                    yield from (f"{name.value}: {text}" for text in _template(said, {}))
 
 
 # Of every kind: closed forms, numerical runs, flight and landings, slip, a rim, a support that turns by itself, losses.

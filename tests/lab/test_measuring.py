@@ -63,7 +63,7 @@ def test_a_long_track_is_thinned_and_says_so(lab: TestClient) -> None:
     rows = "".join(f"{i / 1000:.4f},{i},{i}\n" for i in range(20_000))
     track = sent(lab, f"t (s),x (mm),y (mm)\n{rows}".encode(), "long.csv").json()
     assert len(track["columns"]["t"]) == 4000
-    assert "each 5th" in track["said"][-1]
+    assert "one in 5" in track["said"][-1][0]
 
 
 @pytest.mark.parametrize(

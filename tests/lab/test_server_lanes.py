@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
+import subprocess
 import sys
 import threading
 import time
@@ -27,6 +29,7 @@ from trundle.lab.errors import RefusedError
 from trundle.lab.lanes import Lanes, LeftError
 
 ONE, OTHER = "192.0.2.1", "192.0.2.2"
+ON_LINUX = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="threads stand back on Linux only")
 BRISK = {"quick_time": 0.3, "queue": 100}
 WAIT = 15.0  # s, for one's own turn and a fresh process on a busy machine; it was half a minute, and a refusal
 
@@ -59,23 +62,43 @@ def test_six_that_take_long_keep_nobody_waiting_and_all_are_answered(tmp_path: P
     run(test, **BRISK)
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="threads stand back by themselves on Linux only")
+def niceness(pid: int) -> set[int]:
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return {int((task / "stat").read_text().rpartition(")")[2].split()[16]) for task in tasks}
+
+
+@ON_LINUX
+@pytest.mark.parametrize("own", [0, 10, 19])
+def test_it_stands_back_from_wherever_the_lab_stands(own: int) -> None:
+    """As `nice trundle lab` begins it, too: an absolute niceness would bring it forward there."""
+    at = os.getpriority(os.PRIO_PROCESS, 0)
+    if own < at:
+        pytest.skip(f"these tests stand at {at} themselves")
+    script = (
+        "import os, time; from trundle.lab.niceness import computed; "
+        f"os.nice({own - at}); "
+        "print(computed(lambda: (time.sleep(0.5), os.getpriority(os.PRIO_PROCESS, 0))[1], (), 0.1))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
+    assert int(done.stdout) == min(own + 5, 19)
+
+
+@ON_LINUX
 def test_what_takes_long_stands_back_and_its_process_comes_forward_again(tmp_path: Path) -> None:
-    def niceness(pid: int) -> set[int]:
-        tasks = Path(f"/proc/{pid}/task").iterdir()
-        return {int((task / "stat").read_text().rpartition(")")[2].split()[16]) for task in tasks}
+    own = os.getpriority(os.PRIO_PROCESS, 0)  # of the tests, whose processes begin with it
+    behind = {own, min(own + 5, 19)}
 
     async def test(lanes: Lanes) -> None:
         long = quick(lanes, work, str(tmp_path / "long"), 1.5)
         await until(lambda: bool(begun(tmp_path / "long")))
         [pid] = begun(tmp_path / "long")
-        assert niceness(pid) == {0}
-        await until(lambda: niceness(pid) == {0, 5})
+        assert niceness(pid) == {own}
+        await until(lambda: niceness(pid) == behind)
         await long
-        assert niceness(pid) == {0}
+        assert niceness(pid) == {own}
         known = asyncio.create_task(lanes.run(None, True, work, str(tmp_path / "known"), 1.0))
         await until(lambda: bool(begun(tmp_path / "known")))
-        await until(lambda: niceness(begun(tmp_path / "known")[0]) == {0, 5}, 0.9)
+        await until(lambda: niceness(begun(tmp_path / "known")[0]) == behind, 0.9)
         await known
 
     run(test, **BRISK)

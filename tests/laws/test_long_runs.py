@@ -173,7 +173,7 @@ def test_a_quaternion_means_the_same_rotation_as_scipys() -> None:
 
 def test_short_steps_where_slip_begins_are_no_reason_to_unroll_its_loops() -> None:
     # Its hundred first steps led over a tenth of a microsecond, and half a minute went into code for the rest.
-    effort = taylor._Effort(cost=1000)
+    effort = taylor._Effort(cost=700)
     effort.after(100, 1e-7)
     effort.look(left=1.0)
     assert effort.level == taylor.WITH_CARE

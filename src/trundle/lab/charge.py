@@ -43,7 +43,7 @@ def charge_scene(scenario: Scenario, samples: int | None = None) -> Scene:
     header = {
         "kind": "charge",
         "title": f"{pair.title}: the charge in crossed fields" if pair.title else "A charge in crossed fields",
-        "body": body_table("charge", "Charge", radius, particle.mass),
+        "body": body_table("charge", "Charge", radius, particle.mass, noun="charge"),
         "E": [ex, ey, 0.0],
         "B": [0.0, 0.0, b],
         "charge": particle.charge,

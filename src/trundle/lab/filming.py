@@ -179,7 +179,8 @@ def followed(token: str, asked: Mapping[str, Any], path: str, name: str) -> Answ
     camera = found.calibration.camera
     track = track_told(found)
     step = -(-len(found) // len(track["columns"]["t"]))
-    at_hand = {"title": name, "said": [_named(one, place, name) for one in (*track["said"], *found.calibrated)]}
+    said = [*track["said"], *((one,) for one in found.calibrated)]
+    at_hand = {"title": name, "said": [[_named(one, place, name) for one in clauses] for clauses in said]}
     return as_json(
         {
             **track,

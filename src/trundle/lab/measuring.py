@@ -149,10 +149,13 @@ def track_told(track: Track) -> dict[str, Any]:
     step = -(-len(track) // most)
     called = {read: name for name, read in observable(track).items()}
     columns = {called.get(read, read): _listed(track[read][::step]) for read in ("t", *track.columns)}
-    said = [f"{track.taken}.", track.left_out_rows]
-    said += [f"`{name}` was left out: {why}." for name, why in track.left_out.items()]
+    said = [
+        track.clauses,
+        track.rejections,
+        *((f"`{name}` was left out: {why}",) for name, why in track.left_out.items()),
+    ]
     if step > 1:
-        said.append(f"Of {len(track)} rows the lab takes each {step}th; `trundle fit` takes all.")
+        said.append((f"Of {len(track)} rows the lab takes one in {step}; `trundle fit` takes all",))
     if track.frame != "support":
         rule = "must be along axes that do not turn"
         raise InvalidValueError("frame", rule, track.frame, "Turn the columns first.")

@@ -37,10 +37,9 @@ _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 # digits whatever is compiled already. A short law is compiled with care at once.
 _FIRST_LOOK = 100  # steps
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
-_WORTH_UNROLLING = 4000.0  # steps to come for each unit of it
-# Before that, so many for each unit must have been taken, as long as a tenth of its compilation: where slip begins,
-# steps are a thousand times shorter than they will be
-_SURELY_MANY = 40.0
+# Steps to come for each unit of it, and the share of them to be done first: to unroll a long law takes a minute, and
+# where slip begins steps are a thousand times shorter than they will be.
+_WORTH_UNROLLING, _DONE = 4000.0, 0.01
 _SHORT_LAW = 100  # by `Lowered.cost`
 _HASTE, _OF_ANY_STEP = 3.0, 3e4  # how many times slower that code is; products that take as long as what is not the law
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
@@ -148,7 +147,8 @@ class _Effort:
         """Decide by how many more steps there seem to be in the time left to the run, s."""
         coming = min(self.steps * left / self.lasted, _PATIENCE["steps"]) if self.lasted > 0 else 0.0
         careful = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost
-        if coming > _WORTH_UNROLLING * self.cost and self.steps > _SURELY_MANY * self.cost:
+        worth = _WORTH_UNROLLING * self.cost
+        if coming > worth and self.steps > _DONE * worth:
             self.level = UNROLLED
         elif self.level == IN_HASTE and (coming > careful or self.steps > 3 * careful):
             self.level = WITH_CARE

@@ -1,4 +1,4 @@
-"""How a track was read, in a sentence."""
+"""How a track was read, in clauses: what a reader in another language has said to it, one after the other."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ from .track import Array
 _EVEN = 0.1  # of a step, that times may be off a grid of frames
 
 
-def sentence(data: Any, units: Mapping[str, str], unit_of_time: str, noun: str) -> str:
+def clauses(data: Any, units: Mapping[str, str], unit_of_time: str, noun: str) -> list[str]:
     """Say what was taken for what, how many rows there are, and how they follow each other."""
     heading = data["time"].attrs["heading"]
     said = [f"t from column `{heading}`" + ("" if unit_of_time == "s" else f" in {unit_of_time}")]
     by_unit: dict[str, list[str]] = {}
     for name, unit in units.items():
         by_unit.setdefault("" if unit == "1" else unit, []).append(_as_named(name, data[name].attrs["heading"]))
-    said += [", ".join(some) + (f" in {unit}" if unit else "") for unit, some in by_unit.items()]
+    for unit, some in by_unit.items():
+        said += [*some[:-1], some[-1] + (f" in {unit}" if unit else "")]
     time = data["time"].values
     said.append(f"{time.size} rows" if time.size != 1 else "1 row")
     places = [data[name].values for name in "xy" if name in data] or [array.values for array in data.values()]
-    return ", ".join(said + _rhythm(time, np.all([np.isfinite(array) for array in places], axis=0), noun))
+    return said + _rhythm(time, np.all([np.isfinite(array) for array in places], axis=0), noun)
 
 
 def _as_named(name: str, heading: str) -> str:

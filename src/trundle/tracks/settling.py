@@ -13,7 +13,7 @@ from ..units import UNITS as SI_UNITS
 from . import names
 from .options import Options
 from .rows import Cells, row_numbers, taken_rows
-from .sentence import sentence
+from .sentence import clauses
 from .table import NOT_USED, Column, Table
 from .track import Array, Track
 
@@ -73,7 +73,7 @@ class Reading:
             format=self.format,
             frame=self._frame,
             axes=self.table.axes or self.axes,
-            taken=self._taken(data, {name: unit for name, (_, unit) in units.items()}),
+            clauses=self._clauses(data, {name: unit for name, (_, unit) in units.items()}),
             rejected=rejected,
             left_out=self.left_out,
             counted=self.table.counted,
@@ -238,10 +238,10 @@ class Reading:
         self.unit_of_time = unit or "s"
         return numbers * names.factor(self.unit_of_time, "time", "unit of t")
 
-    def _taken(self, data: Any, units: Mapping[str, str]) -> str:
+    def _clauses(self, data: Any, units: Mapping[str, str]) -> tuple[str, ...]:
         """Say what was taken for what."""
         filmed = self.film and (self.table.axes or self.axes) != "body"
-        said = [sentence(data, units, self.unit_of_time, "frame" if filmed else "sample")]
+        said = clauses(data, units, self.unit_of_time, "frame" if filmed else "sample")
         if self._frame != "support":
             said.append(_FRAME_SAID[self._frame])
         if self._down:
@@ -250,7 +250,7 @@ class Reading:
             said.append("angle turned anticlockwise")
         if self.options.pixel is not None and any(map(_in_pixels, units.values())):
             said.append(f"a pixel of {self.options.pixel * 1e3:.6g} mm")
-        return ", ".join([*said, *self.table.remarks])
+        return (*said, *self.table.remarks)
 
 
 def _in_pixels(unit: str) -> bool:

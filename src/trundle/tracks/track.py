@@ -43,8 +43,8 @@ class Track(Plottable):
         "support", "world" or "corotating".
     axes : str
         "space" or "body": along which Ω has its components.
-    taken : str
-        How it was read, in a sentence.
+    clauses : tuple of str
+        How it was read: what was taken for what, how many rows, and the like.
     rejected : tuple of Rejected
         Rows that were not taken, each with its number and the reason.
     left_out : mapping from str to str
@@ -68,7 +68,7 @@ class Track(Plottable):
     format: str = ""
     frame: str = "support"
     axes: str = "space"
-    taken: str = ""
+    clauses: tuple[str, ...] = ()
     rejected: tuple[Rejected, ...] = ()
     left_out: Mapping[str, str] = field(default_factory=dict)
     counted: str = "row"
@@ -153,14 +153,24 @@ class Track(Plottable):
         return shown
 
     @property
+    def taken(self) -> str:
+        """How it was read, in a sentence."""
+        return ", ".join(self.clauses)
+
+    @property
     def left_out_rows(self) -> str:
         """Which rows were not taken and why, in a sentence that names the first of them; empty if all were."""
+        return f"{', '.join(self.rejections)}." if self.rejected else ""
+
+    @property
+    def rejections(self) -> tuple[str, ...]:
+        """The same in its clauses."""
         if not self.rejected:
-            return ""
-        told = [f"{self.counted} {one.row} ({one.reason})" for one in self.rejected[:TOLD]]
-        more = f" and {len(self.rejected) - TOLD} more" if len(self.rejected) > TOLD else ""
+            return ()
+        first, *others = (f"{self.counted} {one.row} ({one.reason})" for one in self.rejected[:TOLD])
         rows = "1 row was" if len(self.rejected) == 1 else f"{len(self.rejected)} rows were"
-        return f"{rows} left out: {', '.join(told)}{more}."
+        more = [f"and {len(self.rejected) - TOLD} more"] if len(self.rejected) > TOLD else []
+        return (f"{rows} left out: {first}", *others, *more)
 
     def _parts(self) -> Iterator[Markup]:
         yield table(self._columns(), _HEADS)

@@ -227,7 +227,8 @@ export interface Track {
   /** Of each column. */
   units: Record<string, string>
   /** What was taken for what, and what was left out, a sentence each. */
-  said: string[]
+  /** How it was read: sentences, in clauses. */
+  said: string[][]
   /** By how much a camera may shift all that it sees at one place, m. */
   accuracy: number
   /** Where a film shows the ball, of a track that was followed in one. */

@@ -19,7 +19,7 @@ const KEYS: [string, [string, string][]][] = [
       [', and .', 'Fold the left and the right panel'],
       ['S', 'Copy a link to this scenario'],
       ['O', 'Tool: turn the view'],
-      ['D', 'Tool: put the ball somewhere else; arrow keys move it'],
+      ['D', 'Tool: put it somewhere else; arrow keys move it'],
       ['V', 'Tool: draw its first velocity; arrow keys change it'],
       ['N', 'Tool: nudge it while it runs; arrow keys do it'],
       ['Enter', 'Let it go, or throw it, with these tools'],

@@ -81,7 +81,7 @@ const BREAKS = [/(?<=[^\d\s][.!?…]) (?=\S)|\n/, /(?<=;) (?=\S)/, /(?<=[^\d\s]:
 
 function translated(text: string): string {
   if (!/\p{L}{2}/u.test(text)) return entries.get(text) ?? withMarks(text)
-  const said = entry(text) ?? recognized(text) ?? aroundFormulas(text) ?? beforeItsStop(text)
+  const said = entry(text) ?? recognized(text) ?? aroundQuoted(text) ?? beforeItsStop(text)
   if (said !== undefined) return said
   const at = BREAKS.find((one) => one.test(text))
   if (!at) return withMarks(text)
@@ -92,12 +92,15 @@ function translated(text: string): string {
     .join('')
 }
 
-/** A text whose catalogue has `$1$`, `$2$` for its formulas: the words are the same, whatever these are. */
-function aroundFormulas(text: string): string | undefined {
-  const formulas: string[] = []
-  const key = text.replace(/\$[^$]+\$/g, (formula) => `$${formulas.push(formula)}$`)
-  const said = formulas.length > 0 ? (entry(key) ?? recognized(key)) : undefined
-  return said?.replace(/\$(\d+)\$/g, (_, number) => formulas[number - 1] ?? '')
+/**
+ * A text whose catalogue has `$1$`, `$2$` for its formulas, and numbers between backticks for what stands in a file:
+ * the words are the same, whatever these are.
+ */
+function aroundQuoted(text: string): string | undefined {
+  const quoted: string[] = []
+  const key = text.replace(/([$`])[^$`]+\1/g, (one, mark: string) => `${mark}${quoted.push(one)}${mark}`)
+  const said = quoted.length > 0 && key !== text ? (entry(key) ?? recognized(key)) : undefined
+  return said?.replace(/([$`])(\d+)\1/g, (_, __, number) => quoted[number - 1] ?? '')
 }
 
 /** A part of a text, which ends as the whole would not. */

@@ -1,15 +1,25 @@
-/** The sliders of a live page. */
-import { shownDigits } from '../languages/translate'
+/** The sliders of a live page, with a box for each number. */
+import { shownDigits, t } from '../languages/translate'
 import { element, handOver, put } from '../viewer/elements'
 import { shortNumber } from '../viewer/quantities'
 import type { SliderHeader } from './header'
+import { typedNumber } from './typed'
 
 const STEPS = 200 // of a slider by the keyboard
+const MOST = 40 // letters of what was typed that are said again
+
+/** Of each slider. */
+interface Row {
+  range: HTMLInputElement
+  field: HTMLInputElement
+  /** What is wrong with a number that was typed, or why another stands there. */
+  message: HTMLElement
+}
 
 export class Bench {
   readonly element: HTMLElement
   readonly values: number[]
-  private readonly rows: { range: HTMLInputElement; field: HTMLInputElement }[]
+  private readonly rows: Row[]
   private readonly back = element('button', 'live-back', { type: 'button' }, 'As in the file')
 
   constructor(
@@ -41,7 +51,7 @@ export class Bench {
     this.back.disabled = disabled || !this.moved
   }
 
-  private row({ low, high, factor, label, unit }: SliderHeader, i: number): (typeof this.rows)[number] {
+  private row({ low, high, factor, label, unit }: SliderHeader, i: number): Row {
     const [min, max] = [low / factor, high / factor]
     const step = (max - min) / STEPS
     const range = element('input', '', {
@@ -55,25 +65,32 @@ export class Bench {
       type: 'text',
       inputmode: 'decimal',
       'aria-label': `${label}${unit && `, ${unit}`}`,
+      'aria-describedby': `live-${i}-message`,
     })
+    const message = element('p', 'live-message', { id: `live-${i}-message`, role: 'alert' })
     range.addEventListener('input', () => {
       this.set(i, Math.min(high, Math.max(low, range.valueAsNumber * factor)), false)
       this.changed()
     })
     field.addEventListener('change', () => {
-      const typed = Number(field.value.replace(',', '.').replace('−', '-'))
-      if (field.value.trim() && Number.isFinite(typed)) {
-        this.set(i, Math.min(high, Math.max(low, typed * factor)))
-        this.changed()
-      } else this.set(i, this.values[i]!)
+      const said = field.value.trim()
+      const typed = typedNumber(said, unit, t(unit))
+      const value = typed === null ? this.values[i]! : Math.min(high, Math.max(low, typed * factor))
+      this.set(i, value)
+      if (typed !== null) this.changed()
+      if (typed === null) message.textContent = unread(this.sliders[i]!, said, value)
+      else if (value !== typed * factor) message.textContent = beyond(this.sliders[i]!, typed)
+      put(field, 'aria-invalid', String(typed === null))
     })
-    return { range, field }
+    return { range, field, message }
   }
 
   private set(i: number, value: number, slide = true): void {
     const { factor, unit } = this.sliders[i]!
-    const { range, field } = this.rows[i]!
+    const { range, field, message } = this.rows[i]!
     this.values[i] = value
+    message.textContent = ''
+    field.removeAttribute('aria-invalid')
     const text = shortNumber(value / factor)
     field.value = shownDigits(text)
     if (slide) range.value = String(value / factor)
@@ -83,12 +100,31 @@ export class Bench {
   }
 }
 
-function shown(
-  { label, group, unit }: SliderHeader,
-  { range, field }: { range: HTMLInputElement; field: HTMLInputElement },
-  i: number,
-): HTMLElement {
+/** The number as it is shown, with its unit. */
+function amount(value: number, unit: string): string {
+  return `${shownDigits(shortNumber(value))} ${t(unit)}`.trim()
+}
+
+/** What was typed stays as it was typed, in any language. */
+function unread({ label, unit, factor }: SliderHeader, said: string, value: number): string {
+  const values = { label: t(label), unit: t(unit), value: amount(value / factor, unit) }
+  if (said === '') return t('“{label}” needs a number; the box was empty. It stays at {value}.', values)
+  const typed = said.length > MOST ? `${said.slice(0, MOST)}…` : said
+  return unit
+    ? t('“{label}” needs a number in {unit}, and “{typed}” is none. It stays at {value}.', { ...values, typed })
+    : t('“{label}” needs a number, and “{typed}” is none. It stays at {value}.', { ...values, typed })
+}
+
+function beyond({ label, unit, factor, low, high }: SliderHeader, typed: number): string {
+  const [from, to] = [shownDigits(shortNumber(low / factor)), amount(high / factor, unit)]
+  const values = { label: t(label), from, to, typed: amount(typed, unit) }
+  return typed * factor < low
+    ? t('“{label}” goes from {from} to {to}: {typed} is too small, and the least is taken.', values)
+    : t('“{label}” goes from {from} to {to}: {typed} is too large, and the most is taken.', values)
+}
+
+function shown({ label, group, unit }: SliderHeader, { range, field, message }: Row, i: number): HTMLElement {
   const name = element('label', '', { for: `live-${i}` }, label, ' ', element('small', '', {}, group))
   const value = element('span', 'live-value', {}, field, element('span', 'live-unit', {}, unit))
-  return element('div', 'live-slider', {}, name, value, range)
+  return element('div', 'live-slider', {}, name, value, range, message)
 }

@@ -69,6 +69,7 @@ const HEADER = {
     name: 'Solid sphere',
     mass: 0.5,
     label: 'Solid sphere, k = 2/5',
+    noun: 'ball',
     ball: true,
   },
   support: {

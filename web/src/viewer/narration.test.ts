@@ -37,6 +37,14 @@ test('inwards, faster, slipping; and at rest', () => {
   expect(described(along([0.005, 0.005], [0, 0]), 0.5)).toBe('5 mm from the axis, at rest')
 })
 
+test('what moves is called by the noun of its scene; one kept from before has none', () => {
+  const { noun: _, ...body } = along([0], [0]).header.body
+  const said = (more: object) => narrated([along([1, 1], [0, 0], { body: { ...body, ...more } })], 0)
+  expect(said({ noun: 'disc', ball: false })).toContain('disc 1 m from the axis')
+  expect(said({ noun: 'charge' })).toContain('charge 1 m')
+  expect(said({})).toContain('body 1 m')
+})
+
 test('round the axis, the way round is said', () => {
   expect(described(unpack(bytes(circling(101))), 1)).toBe(
     '1 m from the axis, going round anticlockwise, at an even speed',

@@ -4,7 +4,7 @@ import type { Scene, Triple } from './scene'
 
 /** Every word of it, by which the catalogues have it. */
 export const WORDS = {
-  ball: 'ball',
+  body: 'body',
   at: (time: string, said: string) => `${time} s: ${said}.`,
   from: { axis: (far: string) => `${far} from the axis`, start: (far: string) => `${far} from where it began` },
   on: { axis: 'on the axis', start: 'where it began' },
@@ -88,8 +88,8 @@ export function described(scene: Scene, time: number): string {
 /** The same of all that move, with the time. */
 export function narrated(scenes: readonly Scene[], time: number): string {
   const one = (scene: Scene) => {
-    const { ball, label, name } = scene.header.body
-    const called = scenes.length > 1 ? label : ball ? WORDS.ball : name.toLowerCase()
+    const { label, noun = WORDS.body } = scene.header.body
+    const called = scenes.length > 1 ? label : noun
     return `${t(called)} ${described(scene, time)}`
   }
   return scenes.length ? WORDS.at(time.toFixed(1), scenes.map(one).join('; ')) : ''

@@ -39,11 +39,12 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   const { live, curves } = scene.header
   const drawn = live ? startLive(root, stage, viewer, scene, live) : null
   const own = !live && scenes.length === 1 && curves?.length ? curvesOf(stage, viewer, scene) : null
-  offerThemes(root, (theme) => {
+  const put = offerThemes(root, (theme) => {
     viewer.theme = theme
     drawn?.restyle()
     own?.restyle()
   })
+  onPaper(root, host, viewer, put)
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.play()
 }
 
@@ -73,8 +74,29 @@ function themeNow(root: Document): 'light' | 'dark' {
   return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'
 }
 
-/** A switch between light and dark; until it is used, the page goes with the system. */
-function offerThemes(root: Document, changed: (theme: Theme) => void): void {
+/** What is printed is light, with a picture of the stage: its own canvas keeps none for a printer. */
+function onPaper(root: Document, host: HTMLElement, viewer: Viewer, put: (theme: 'light' | 'dark') => void): void {
+  const printed = element('canvas', 'page-printed', { role: 'img', 'aria-label': 'The motion, as it stands' })
+  let before = themeNow(root)
+  addEventListener('beforeprint', () => {
+    before = themeNow(root)
+    put('light')
+    const canvas = host.querySelector<HTMLCanvasElement>('[data-testid="stage"]')
+    const drawn = viewer.snapshot() // drawn at once; its file is not waited for
+    drawn.catch(() => undefined)
+    if (!canvas?.width || !canvas.height) return
+    Object.assign(printed, { width: canvas.width, height: canvas.height })
+    printed.getContext('2d')?.drawImage(canvas, 0, 0)
+    host.after(printed)
+  })
+  addEventListener('afterprint', () => {
+    printed.remove()
+    put(before)
+  })
+}
+
+/** A switch between light and dark; until it is used, the page goes with the system. Returns what puts one on. */
+function offerThemes(root: Document, changed: (theme: Theme) => void): (theme: 'light' | 'dark') => void {
   const button = root.querySelector<HTMLButtonElement>('[data-trundle-theme]')
   let chosen = false
   const put = (theme: 'light' | 'dark') => {
@@ -86,10 +108,11 @@ function offerThemes(root: Document, changed: (theme: Theme) => void): void {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', ({ matches }) => {
     if (!chosen) put(matches ? 'dark' : 'light')
   })
-  if (!button) return
+  if (!button) return put
   button.hidden = false
   button.addEventListener('click', () => {
     chosen = true
     put(themeNow(root) === 'dark' ? 'light' : 'dark')
   })
+  return put
 }

@@ -54,6 +54,8 @@ export interface BodyHeader {
   name: string
   mass: number
   label: string
+  /** What it is in one word: "ball", "disc"; scenes kept from before do not say. */
+  noun?: string
   /** A sphere about its centre of mass, which rolls any way. */
   ball: boolean
 }

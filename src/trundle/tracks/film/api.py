@@ -289,8 +289,6 @@ def _track(
         attrs={"frame": "support", "axes": "space", "film_rate": rates[0],
                "accuracy": off * _pixel(found, places), "accuracy_in_pixels": off},
     )  # fmt: skip
-    count = len(ball.numbers)
-    taken = ", ".join([f"{count} frames of {ball.frames}", *said])
     digest = hashlib.sha256()
     with film.path.open("rb") as stream:
         while part := stream.read(2**20):
@@ -300,7 +298,7 @@ def _track(
         data,
         source=film.path.name,
         format="a film",
-        taken=taken,
+        clauses=(f"{len(ball.numbers)} frames of {ball.frames}", *said),
         rejected=ball.as_rejected(),
         counted="frame",
         provenance=provenance,

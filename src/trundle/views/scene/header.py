@@ -78,10 +78,18 @@ def header_with(
 
 
 def body_table(
-    kind: str, name: str, radius: float, mass: float | None = None, more: str = "", *, ball: bool = True
+    kind: str,
+    name: str,
+    radius: float,
+    mass: float | None = None,
+    more: str = "",
+    *,
+    noun: str = "ball",
+    ball: bool = True,
 ) -> dict[str, Any]:
     """Return what a header says of a body; its label is the name and what more there is to it."""
-    return {"kind": kind, "radius": radius, "name": name, "mass": mass, "label": name + more, "ball": ball}
+    told = {"kind": kind, "radius": radius, "name": name, "mass": mass, "label": name + more}
+    return {**told, "noun": noun, "ball": ball}
 
 
 def support_table(
@@ -122,11 +130,13 @@ def tables(text: str) -> dict[str, Any] | None:
 
 def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[str, Any]:
     body = system.body
-    kind = str(words.get("kind", body.shape.noun_of(body)))
+    noun = body.shape.noun_of(body)
+    kind = str(words.get("kind", noun))
     name = kind.replace("-", " ").capitalize()
     ratio = f", k = {as_ratio(float(body.inertia_ratio))}" if body.is_isotropic_sphere else ""
     ball = ball_of(body)
-    return body_table(kind, name, radius, float(body.mass), ratio, ball=ball is not None and ball.concentric)
+    any_way = ball is not None and ball.concentric
+    return body_table(kind, name, radius, float(body.mass), ratio, noun=noun, ball=any_way)
 
 
 def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> dict[str, Any]:

@@ -115,6 +115,12 @@ it('lets a body whose turning is told roll on, whatever else is changed', () => 
   expect(choose(rollingAgain(turning), 'body.kind', 'penny').start.velocity).not.toBe('rolling')
 })
 
+it('leaves a rolled path as it is, which has no start', () => {
+  const { start: _, support: __, ...rolled } = PEA
+  const path = { ...rolled, path: [{ kind: 'straight', length: '10 cm' }] } as unknown as typeof PEA
+  expect(rollingAgain(path)).toBe(path)
+})
+
 it('writes a velocity that is not there yet as a pair', () => {
   const { velocity: _, ...start } = PEA.start
   const next = fieldOf({ ...PEA, start }, 'start.velocity.1').set!({ ...PEA, start }, '1 m/s')

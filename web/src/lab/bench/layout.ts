@@ -211,9 +211,9 @@ function saysTurning({ start, support }: Scenario): boolean {
   return Array.isArray(start.angular_velocity) && support.friction === undefined && start.height === undefined
 }
 
-/** With whatever else was changed: a velocity that rolled before rolls again. */
+/** With whatever else was changed: a velocity that rolled before rolls again. A rolled path has no start to say one. */
 export function rollingAgain(scenario: Scenario): Scenario {
-  const given = Array.isArray(scenario.start.velocity)
+  const given = Array.isArray(scenario.start?.velocity)
   return given && saysTurning(scenario) ? withValue(scenario, 'start.velocity', 'rolling') : scenario
 }
 

@@ -5,7 +5,7 @@ import { parse, write } from '../quantity'
 import type { Json, Quantity, Scenario, Table } from '../scenario'
 import { withValue } from '../scenario'
 
-/** Why the ball cannot be dragged here, or null where it can. */
+/** Why the body cannot be dragged here, or null where it can. */
 export function whyNotDragged(scenario: Scenario): string | null {
   return scenario.support ? null : 'A ball that is rolled along a path starts where the path does.'
 }

@@ -2,6 +2,7 @@
 import type { Place } from '../../viewer/contract'
 import { put as attribute, hide, say } from '../../viewer/elements'
 import { beside, capital } from '../../viewer/headline'
+import { WORDS } from '../../viewer/narration'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
@@ -28,22 +29,29 @@ const THROWN = 0.02 // m/s that an arrow key adds
 const NUDGED = 0.05 // m/s by which an arrow key nudges
 const SOON = 250 // ms: an answer that comes sooner needs no sign that one works at it, which would only flicker
 
-const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key: string; hint: string }[] = [
+const TOOLS: {
+  tool: BenchTool
+  icon: IconName
+  word: string
+  label: string
+  key: string
+  hint(body: string): string
+}[] = [
   {
     tool: 'orbit',
     icon: 'orbit',
     word: 'View',
     label: 'Turn the view',
     key: 'O',
-    hint: 'Take the ball and let it go, or throw it. Drag beside it to turn the view.',
+    hint: (body) => `Take ${body} and let it go, or throw it. Drag beside it to turn the view.`,
   },
   {
     tool: 'drag',
     icon: 'hand',
     word: 'Move',
-    label: 'Move the ball',
+    label: 'Move it',
     key: 'D',
-    hint: 'Drag the ball to where it should start, or move it by the arrow keys. Enter lets it go.',
+    hint: (body) => `Drag ${body} to where it should start, or move it by the arrow keys. Enter lets it go.`,
   },
   {
     tool: 'velocity',
@@ -51,7 +59,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key
     word: 'Throw',
     label: 'Draw its velocity',
     key: 'V',
-    hint: 'Drag from the ball: the arrow is its first velocity. Arrow keys change it, Enter throws.',
+    hint: (body) => `Drag from ${body}: the arrow is the first velocity. Arrow keys change it, Enter throws.`,
   },
   {
     tool: 'nudge',
@@ -59,7 +67,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key
     word: 'Nudge',
     label: 'Nudge it',
     key: 'N',
-    hint: 'Drag from the ball while it runs, or press an arrow key: it goes on from there.',
+    hint: (body) => `Drag from ${body} while it runs, or press an arrow key: it goes on from there.`,
   },
 ]
 
@@ -140,18 +148,22 @@ export function createStage(app: App): Stage {
       return
     }
     viewer.tool = tool
-    const chosen = TOOLS.find((one) => one.tool === tool)
     buttons.forEach((button, index) => {
       const on = TOOLS[index]?.tool === tool
       button.setAttribute('aria-checked', String(on))
       button.tabIndex = on ? 0 : -1
     })
-    say(hint, chosen?.hint ?? '')
+    sayHint()
     hint.hidden = tool === 'orbit' && (knowsHand || whyNotDragged(store.scenario) !== null)
     if (tool === 'drag' || tool === 'velocity') {
       viewer.pause()
       viewer.seek(0)
     }
+  }
+  /** In the words of what lies there. */
+  function sayHint(): void {
+    const chosen = TOOLS.find(({ tool }) => tool === viewer.tool)
+    say(hint, chosen?.hint(`the ${scene?.header.body.noun ?? WORDS.body}`) ?? '')
   }
   useTool('orbit')
 
@@ -199,7 +211,7 @@ export function createStage(app: App): Stage {
     () => starts.stop(),
   )
 
-  /** The ball is put down there, or thrown from there; `go`: it was let go, and the film begins. */
+  /** The body is put down there, or thrown from there; `go`: it was let go, and the film begins. */
   function drag({ x, y, z, contact }: Place, velocity: Triple | null, go = false): void {
     const at: StartRequest['at'] = { position: [x, y, z], contact }
     const by: StartRequest[] = velocity ? [{ at }, { at, velocity }] : [{ at }]
@@ -271,7 +283,7 @@ export function createStage(app: App): Stage {
   }
   element.addEventListener('keydown', press, { capture: true })
 
-  /** While it stands still the whole path is there; while it runs the ball draws it. */
+  /** While it stands still the whole path is there; while it runs the body draws it. */
   function drawAhead(): void {
     viewer.show.ahead = !viewer.playing
   }
@@ -304,6 +316,7 @@ export function createStage(app: App): Stage {
     setScene(next, keep) {
       const first = scene === undefined
       scene = next
+      sayHint()
       hide(empty, true)
       const was = viewer.playing
       drawAhead()

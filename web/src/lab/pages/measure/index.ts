@@ -22,8 +22,8 @@ import { button } from '../parts/controls'
 import { createStage, playUnlessCalm, told } from '../parts/stage'
 import { createFilm, isFilm } from './film'
 import { createPlot } from './plot'
-import { byLabels, createReading, type How } from './reading'
-import { marked, report } from './report'
+import { clausesSaid, createReading, type How } from './reading'
+import { report } from './report'
 import { createShowing } from './showing'
 
 const BENCH = '(bench)'
@@ -155,8 +155,8 @@ export const measure: Page = {
       track = answer
       fill(
         said,
-        h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
-        answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(byLabels(sentence)))),
+        h('p', {}, h('strong', { translate: 'no' }, answer.title), ': ', ...clausesSaid(answer.said[0] ?? [])),
+        answer.said.slice(1).map((clauses) => h('p', { class: 'map-hint' }, ...clausesSaid(clauses))),
       )
       ready()
       plot.measured(answer)

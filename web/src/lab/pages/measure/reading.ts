@@ -4,6 +4,7 @@ import { handOver } from '../../../viewer/elements'
 import type { Question } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { button } from '../parts/controls'
+import { marked } from './report'
 
 export type How = Record<string, string>
 
@@ -62,11 +63,17 @@ const FIELDS: readonly Asked[] = [
 const digitsOf = (key: string) => FIELDS.some((one) => one.key === key && one.digits)
 
 /** What the package says of a file, with the names of this page for its options: “Unit of angles” for --angles. */
-export function byLabels(sentence: string): string {
+function byLabels(sentence: string): string {
   return sentence.replace(/--([a-z]+)/g, (option, name: string) => {
     const field = FIELDS.find(({ key }) => key === (name === 'unit' ? 'units' : name))
     return field ? `“${t(field.label)}”` : option
   })
+}
+
+/** A sentence about a track, whose clauses are said one by one: which of them there are differs from file to file. */
+export function clausesSaid(clauses: readonly string[]): Node[] {
+  const said = clauses.map((clause) => byLabels(t(clause))).join(', ')
+  return marked(said && `${said}.`).map((part) => (typeof part === 'string' ? new Text(part) : part))
 }
 
 export function createReading(changed: (how: How) => void): Reading {
