@@ -226,8 +226,7 @@ export interface Track {
   columns: TrackColumns
   /** Of each column. */
   units: Record<string, string>
-  /** What was taken for what, and what was left out, a sentence each. */
-  /** How it was read: sentences, in clauses. */
+  /** How it was read, and what was left out: sentences, in clauses. */
   said: string[][]
   /** By how much a camera may shift all that it sees at one place, m. */
   accuracy: number
