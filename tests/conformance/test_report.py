@@ -255,6 +255,20 @@ def test_a_solver_without_restitution_is_given_no_bounce() -> None:
         assert "has no coefficient of restitution" in answer.message
 
 
+@pytest.mark.parametrize("name", [name for name in INSTALLED if name in ("ode", "pybullet", "rapier")])
+def test_an_engine_keeps_its_name_in_each_of_its_settings(name: str) -> None:
+    engine = engines.engine(name)
+    for answer in answered(name, "incline", 1e-2, *(setting.name for setting in engine.settings)):
+        assert answer.outcome == "ok", answer.message
+        assert answer.engine.startswith(engine.title)
+
+
+@pytest.mark.skipif("ode" not in INSTALLED, reason="ode is not installed: `trundle score --engine ode` does it")
+def test_what_double_precision_has_no_words_for_is_said() -> None:
+    (answer,) = answered("ode", "bowl-mesh-coarse", 1e-2, "double precision")
+    assert (answer.outcome, answer.message) == ("cannot", "this adapter has no triangles in double precision")
+
+
 CAUSES = [  # engine, case, step, the setting that has an error, the one that takes it away
     ("dart", "billiard-swerve", 1e-3, "as shipped", "a round cone of friction"),
     ("dart", "billiard-swerve", 1e-3, "friction pyramid", "best"),

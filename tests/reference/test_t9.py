@@ -11,7 +11,7 @@ import pytest
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.solve.exact import SphereOnPlane, SphereOnUnsteadyPlane, closed_form
+from trundle.solve.exact import SphereOnPlane, SphereOnUnsteadyPlane, closed_form, sphere_on_unsteady_plane
 
 A, M = 0.025, 0.065
 BALL = tr.Body.solid_sphere(A, M)
@@ -84,6 +84,14 @@ def test_where_the_table_hardly_turns_the_ball_goes_straight(rate: str) -> None:
         assert abs(V.y + 0.1) <= 1e-9
         if rate == "0*t":
             assert abs(r.x - (0.1 + 0.2 * t)) <= EXACT(2000, 0.2 * t)
+
+
+def test_a_run_works_out_its_quadratures_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the search for its stop to its samples it is one form."""
+    made, course = [], sphere_on_unsteady_plane.Course
+    monkeypatch.setattr(sphere_on_unsteady_plane, "Course", lambda form: made.append(form) or course(form))
+    tr.Scenario.load("turntable-starting-up").run()
+    assert len(made) == 1
 
 
 def test_a_kink_is_found() -> None:

@@ -136,7 +136,7 @@ class _Effort:
 
     @property
     def settled(self) -> bool:
-        """Whether it has all that it will ever have, as far as can be told."""
+        """Whether a first look has found better code than what is made in haste; unrolled code may still come."""
         return self.level != IN_HASTE and self.steps >= _FIRST_LOOK
 
     def after(self, steps: int, lasted: float) -> None:

@@ -79,7 +79,7 @@ export class Bench {
       this.set(i, value)
       if (typed !== null) this.changed()
       if (typed === null) message.textContent = unread(this.sliders[i]!, said, value)
-      else if (value !== typed * factor) message.textContent = beyond(this.sliders[i]!, typed)
+      else if (shortNumber(value / factor) !== shortNumber(typed)) message.textContent = beyond(this.sliders[i]!, typed)
       put(field, 'aria-invalid', String(typed === null))
     })
     return { range, field, message }

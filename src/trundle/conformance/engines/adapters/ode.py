@@ -13,7 +13,7 @@ _STILL = 1e-5  # m/s, below which the direction of slipping is rounding
 def run(task: Task) -> Task:
     """Answer one task."""
     setting = task["setting"]
-    core, ode, name = _library(double=setting.get("double", False))
+    core, ode, engine = _library(task, double=setting.get("double", False))
     refuse(
         task,
         {
@@ -61,12 +61,14 @@ def run(task: Task) -> Task:
         ]
 
     turn = None if hinge is None else lambda: (hinge.getAngle(), table.getAngularVel()[2])
-    return march(task, name, step, read, turn)
+    return march(task, engine, step, read, turn)
 
 
-def _library(*, double: bool) -> tuple[Any, Any, str]:
+def _library(task: Task, *, double: bool) -> tuple[Any, Any, str]:
     """Return what has vectors, what has ODE, and its name."""
     if double:
+        if "mesh" in task["support"]:
+            raise CannotError("this adapter has no triangles in double precision")
         from . import ode_in_double
 
         return ode_in_double.core, ode_in_double.ode, "ODE (of dartpy's wheel)"

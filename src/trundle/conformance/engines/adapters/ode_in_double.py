@@ -131,10 +131,6 @@ def _library() -> Any:
     return library
 
 
-def _none(*_given: Any) -> Any:
-    raise CannotError("this adapter has no triangles in double precision")
-
-
 def _tuple(*numbers: float) -> tuple[float, ...]:
     return numbers
 
@@ -148,7 +144,6 @@ ode = SimpleNamespace(
     OdeSphereGeom=partial(_Handle, "Geom", "dCreateSphere", None),
     OdeBoxGeom=partial(_Handle, "Geom", "dCreateBox", None),
     OdeCylinderGeom=partial(_Handle, "Geom", "dCreateCylinder", None),
-    OdeTriMeshData=_none,
     OdeJointGroup=lambda: _Handle("JointGroup", "dJointGroupCreate", c_int(0)),
     OdeHingeJoint=lambda world: _Handle("Hinge", "dJointCreateHinge", world, None),
     OdeContactJoint=partial(_Handle, "Joint", "dJointCreateContact"),
