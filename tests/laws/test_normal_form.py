@@ -77,6 +77,27 @@ def test_equal_terms_meet_and_cancel() -> None:
     assert over == made("-", x, y)
 
 
+def test_a_factor_that_all_terms_share_is_multiplied_once() -> None:
+    made = Made()
+    x, y, z, w = made.factors
+    apart = made("-", made("+", made("+", made("*", x, y), w), made("*", made("*", x, z), {(): 3.0})), w)
+    assert made.operations(apart) == 3  # x·(y + 3·z)
+    assert abs(made.value(apart) - VALUES[0] * (VALUES[1] + 3 * VALUES[2])) < EXACT(10, 10.0)
+    squared = made("-", made("+", made("+", made("*", made("*", x, x), y), w), made("*", x, z)), w)
+    assert made.operations(squared) == 3  # x·(x·y + z)
+    divided = made("-", made("+", made("+", made("/", y, x), w), made("/", z, x)), w)
+    assert abs(made.value(divided) - (VALUES[1] + VALUES[2]) / VALUES[0]) < EXACT(10, 10.0)
+
+
+def test_a_product_that_is_there_serves_a_sum() -> None:
+    made = Made()
+    x, y, z, w = made.factors
+    there = made("*", x, y)
+    assert made.operations(there) == 1
+    apart = made("-", made("+", made("+", there, w), made("*", x, z)), w)
+    assert made.operations(there, apart) == 3  # x·y, x·z and their sum
+
+
 def test_a_sum_that_comes_up_again_does_not_lean_on_itself() -> None:
     made = Made()
     x, y, z, w = made.factors

@@ -261,6 +261,10 @@ class NormalForm:
 
     def _sum(self, value: Sum) -> Any:
         """Write a sum, in which terms with one coefficient are added up before they are multiplied by it."""
+        common = _common(value)
+        if common and not any(self._is_there(monomial) for monomial in value):
+            rest = {_times(monomial, _inverted(common)): coefficient for monomial, coefficient in value.items()}
+            return apply(self.tape, "*", self.node({common: 1.0}), self.node(rest))
         groups: dict[Any, tuple[Any, list[tuple[Monomial, float]]]] = {}
         for monomial, coefficient in value.items():
             size, sign = _unsigned(coefficient)
@@ -361,6 +365,13 @@ def _times(a: Monomial, b: Monomial) -> Monomial:
     for place, count in b:
         counts[place] = counts.get(place, 0) + count
     return tuple(sorted([pair for pair in counts.items() if pair[1]]))
+
+
+def _common(value: Sum) -> Monomial:
+    """Return the factors, not divisors, that all terms have."""
+    first, *others = (dict(monomial) for monomial in value)
+    least = {place: min(count, *(other.get(place, 0) for other in others)) for place, count in first.items()}
+    return tuple((place, count) for place, count in least.items() if count > 0)
 
 
 def _inverted(monomial: Monomial) -> Monomial:
