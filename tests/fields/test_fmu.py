@@ -83,6 +83,24 @@ def test_it_ends_where_the_phase_ends(name: str, kind: str, tmp_path: Path) -> N
 
 
 @WITH_C
+@pytest.mark.parametrize("early", [True, False])
+def test_the_last_step_of_a_phase_ends_at_its_event(early: bool, tmp_path: Path) -> None:
+    """An importer that lets a step end early has the last sample at the event itself, and else at the step's end."""
+    unit, system, start = made(tmp_path, "off-the-rim")
+    event = tr.simulate(system, start, duration=4.0, every=0.1).events[0]
+    there = tr.simulate(system, start, duration=event.time, every=event.time / 4).data.position.values[-1]
+    found = ran(unit, "CoSimulation", 4.0, early_return_allowed=early)
+    before, last = found["time"][-2:]
+    assert before < event.time < 4.0
+    if early:
+        assert last == pytest.approx(event.time, abs=1e-9)
+    else:
+        assert event.time < last < before + 0.1
+    for known, axis in zip(there, "xyz", strict=True):
+        assert found[f"position_{axis}"][-1] == pytest.approx(known, abs=1e-8)
+
+
+@WITH_C
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("name", "until"), [("bouncing-ball-with-backspin", 2.0), ("tippe-top", 1.0)])
 def test_it_goes_on_where_the_same_phase_follows(name: str, until: float, kind: str, tmp_path: Path) -> None:

@@ -35,8 +35,8 @@ def model_description(field: VectorField, y: np.ndarray, begin: float, title: st
         variableNamingConvention="flat",
     )
     ET.SubElement(root, "ModelExchange", modelIdentifier=IDENTIFIER, canGetAndSetFMUState="true")
-    variable = {"canHandleVariableCommunicationStepSize": "true", "canGetAndSetFMUState": "true"}
-    ET.SubElement(root, "CoSimulation", {"modelIdentifier": IDENTIFIER} | variable)
+    able = ("canHandleVariableCommunicationStepSize", "canGetAndSetFMUState", "mightReturnEarlyFromDoStep")
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": IDENTIFIER} | dict.fromkeys(able, "true"))
     rates = [f"{unit}/s" if unit else "1/s" for unit in field.state_units]
     units = {*field.state_units, *rates, *field.parameter_units, *field.input_units, *field.output_units, "s"}
     _define(root, sorted(units - {""}))

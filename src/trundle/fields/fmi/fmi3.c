@@ -45,6 +45,7 @@ typedef struct {
     double y[MODEL_STATES + 1], p[MODEL_PARAMETERS + 1], u[MODEL_INPUTS + 1], e[MODEL_GIVEN + 1];
     double size[MODEL_EVENTS + 1]; /* the largest value of each event function so far */
     bool begun, ended;
+    bool early; /* may a step end early? */
     void *environment;
     LogMessage log;
 } Model;
@@ -225,8 +226,10 @@ EXPORT Instance fmi3InstantiateCoSimulation(const char *name, const char *token,
                                             bool logging, bool event_mode, bool early, const Reference required[],
                                             size_t n, void *environment, LogMessage log, IntermediateUpdate update)
 {
-    (void)name, (void)resources, (void)visible, (void)event_mode, (void)early, (void)required, (void)n, (void)update;
-    return instantiate(token, environment, logging ? log : NULL);
+    Model *m = instantiate(token, environment, logging ? log : NULL);
+    (void)name, (void)resources, (void)visible, (void)event_mode, (void)required, (void)n, (void)update;
+    if (m) m->early = early;
+    return m;
 }
 
 EXPORT Instance fmi3InstantiateScheduledExecution(const char *name, const char *token, const char *resources,
@@ -451,10 +454,11 @@ EXPORT Status fmi3DoStep(Instance i, double point, double size, bool final, bool
     Model *m = i;
     Status status;
     (void)final;
-    m->t = point;
+    if (!m->ended) m->t = point;
     (void)fallen(m, 0);
     status = m->ended ? OK : advance(m, point + size);
-    *event = *early = false;
+    *event = false;
+    *early = m->early && m->t < point + size;
     *terminate = m->ended;
     *last = m->t;
     return status;
