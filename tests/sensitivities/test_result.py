@@ -49,6 +49,26 @@ def test_when_the_ball_runs_off_depends_on_the_rim() -> None:
     assert abs(slope - 1 / outwards) <= 1e-11 * abs(slope)
 
 
+def test_rounding_is_not_shown_as_a_slope() -> None:
+    """When a superball lands does not depend on its radius; nor does the speed with which it has come back."""
+    ball = tr.sensitivities("superball", wrt=["body.radius", "start.height"], compared=False)
+    assert 0 < np.abs(ball.event_time.values[:, 0]).max() < 1e-12
+    lines = str(ball).splitlines()
+    assert any(line.startswith("body.radius") and line.endswith("(0, 0, 0)") for line in lines)
+    landings = [line for line in lines if line.startswith("land")]
+    assert landings
+    assert all("moves by 0 s per m of body.radius, " in line for line in landings)
+    assert not any(" 0 s per m of start.height" in line for line in landings)
+
+
+def test_a_slope_of_a_number_that_is_zero_is_shown() -> None:
+    dropped = tr.sensitivities("turntable-drop", wrt="start.position[1]", duration="1 s", compared=False)
+    assert "nan" not in str(dropped)
+    small = tr.sensitivities("off-the-rim", wrt="start.position[1]", compared=False)
+    assert float(small.data.value.values[0]) == 0
+    assert "moves by 0 s" not in str(small)
+
+
 def test_a_run_has_the_derivatives_of_its_scenario() -> None:
     scenario = tr.Scenario.load("tilted-turntable")
     run = scenario.run(duration=2.0, every=0.5)

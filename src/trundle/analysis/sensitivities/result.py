@@ -74,9 +74,8 @@ class Sensitivities(Plottable, Serializable):
         """A row for each number, as the table shows it."""
         rows = []
         for j, name in enumerate(self.data.parameter.values):
-            last = [
-                ", ".join(f"{part:.4g}" for part in self.data[one].values[-1, :, j]) for one in ("position", "velocity")
-            ]
+            slopes = [self.data[one].values[..., j] for one in ("position", "velocity")]
+            last = [", ".join(_shown(part, np.abs(each).max()) for part in each[-1]) for each in slopes]
             unit = str(self.data.unit.values[j])
             rows.append(
                 (str(name), f"{float(self.data.value.values[j]):.6g}", unit or "1", *(f"({one})" for one in last))
@@ -101,11 +100,16 @@ class Sensitivities(Plottable, Serializable):
     @property
     def _events(self) -> list[str]:
         """A line for each of the first events: when it comes, and how that changes."""
-        lines = []
+        lines, names, units = [], self.data.parameter.values, self.data.unit.values
+        values = np.abs(self.data.value.values.astype(float))
         for i, kind in enumerate(self.data.kind.values[:_MOST_EVENTS]):
-            pairs = zip(self.data.parameter.values, self.data.unit.values, self.data.event_time.values[i], strict=True)
-            each = [f"{slope:.4g} {f's per {unit}' if unit else 's'} of {name}" for name, unit, slope in pairs]
-            lines.append(f"{kind} at t = {float(self.data.instant.values[i]):.6g} s moves by {', '.join(each)}")
+            time, slopes = float(self.data.instant.values[i]), self.data.event_time.values[i]
+            scales = np.divide(time, values, out=np.abs(slopes), where=values > 0)
+            each = [
+                f"{_shown(slope, scale)} {f's per {unit}' if unit else 's'} of {name}"
+                for name, unit, slope, scale in zip(names, units, slopes, scales, strict=True)
+            ]
+            lines.append(f"{kind} at t = {time:.6g} s moves by {', '.join(each)}")
         return lines
 
     def _headline(self) -> Headline:
@@ -191,3 +195,9 @@ class Sensitivities(Plottable, Serializable):
 
 
 _MOST_EVENTS = 10
+_ROUNDING = 1e-12  # of the scale of a slope
+
+
+def _shown(slope: float, scale: float) -> str:
+    """Write a slope down; what rounding alone has made of none is 0."""
+    return "0" if abs(slope) <= _ROUNDING * scale else f"{slope:.4g}"
