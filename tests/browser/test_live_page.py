@@ -176,7 +176,7 @@ def test_every_number_fits_its_box_and_is_read_again(small: Path, opened: OpenPa
 def test_on_paper_it_is_light_and_has_a_picture_of_the_stage(file: Path, opened: OpenPage) -> None:
     page = opened(file, color_scheme="dark")
     expect(headline(page)).to_contain_text("Ran off")
-    printed, root = page.locator(".page-printed"), page.locator(":root")
+    printed, root = page.locator(".tr-printed"), page.locator(":root")
     expect(printed).to_have_count(0)
     page.emulate_media(media="print")
     page.evaluate("dispatchEvent(new Event('beforeprint'))")

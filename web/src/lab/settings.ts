@@ -14,7 +14,7 @@ export interface Settings {
 
 export interface SettingsStore {
   readonly value: Settings
-  /** Light or dark, as it is drawn now. */
+  /** Light or dark, as it is drawn now; on paper light. */
   readonly appearance: 'light' | 'dark'
   change(part: Partial<Pick<Settings, 'theme' | 'projector' | 'units'>>): void
   subscribe(listener: (settings: Settings) => void): () => void
@@ -53,7 +53,9 @@ export function createSettings(): SettingsStore {
     },
   }
   const listeners = new Set<(settings: Settings) => void>()
-  const appearance = () => (value.theme === 'system' ? (dark.matches ? 'dark' : 'light') : value.theme)
+  let onPaper = false
+  const chosen = () => (value.theme === 'system' ? (dark.matches ? 'dark' : 'light') : value.theme)
+  const appearance = () => (onPaper ? 'light' : chosen())
 
   function apply(): void {
     document.documentElement.dataset.theme = appearance()
@@ -62,6 +64,11 @@ export function createSettings(): SettingsStore {
   }
   dark.addEventListener('change', apply)
   calm.addEventListener('change', apply)
+  for (const when of ['beforeprint', 'afterprint'] as const)
+    addEventListener(when, () => {
+      onPaper = when === 'beforeprint'
+      apply()
+    })
   apply()
 
   return {

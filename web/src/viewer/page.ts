@@ -4,6 +4,7 @@ import { learnWithin, unzipped } from '../languages/within'
 import { startLive } from '../live/page'
 import type { Theme, Viewer } from './contract'
 import { element, say } from './elements'
+import { printed } from './printing'
 import { type Scene, unpack } from './scene'
 import { createViewer } from './viewer'
 
@@ -44,7 +45,13 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
     drawn?.restyle()
     own?.restyle()
   })
-  onPaper(root, host, viewer, put)
+  let before = themeNow(root)
+  addEventListener('beforeprint', () => {
+    before = themeNow(root)
+    put('light')
+  })
+  addEventListener('afterprint', () => put(before))
+  printed(host, viewer)
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.play()
 }
 
@@ -72,27 +79,6 @@ function themeNow(root: Document): 'light' | 'dark' {
   const chosen = root.documentElement.dataset.theme
   if (chosen === 'light' || chosen === 'dark') return chosen
   return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'
-}
-
-/** What is printed is light, with a picture of the stage: its own canvas keeps none for a printer. */
-function onPaper(root: Document, host: HTMLElement, viewer: Viewer, put: (theme: 'light' | 'dark') => void): void {
-  const printed = element('canvas', 'page-printed', { role: 'img', 'aria-label': 'The motion, as it stands' })
-  let before = themeNow(root)
-  addEventListener('beforeprint', () => {
-    before = themeNow(root)
-    put('light')
-    const canvas = host.querySelector<HTMLCanvasElement>('[data-testid="stage"]')
-    const drawn = viewer.snapshot() // drawn at once; its file is not waited for
-    drawn.catch(() => undefined)
-    if (!canvas?.width || !canvas.height) return
-    Object.assign(printed, { width: canvas.width, height: canvas.height })
-    printed.getContext('2d')?.drawImage(canvas, 0, 0)
-    host.after(printed)
-  })
-  addEventListener('afterprint', () => {
-    printed.remove()
-    put(before)
-  })
 }
 
 /** A switch between light and dark; until it is used, the page goes with the system. Returns what puts one on. */

@@ -122,7 +122,7 @@ export function createControls(app: App): Controls {
       h('option', { value: '', selected: true }, `${item.label} …`),
       item.options.map(option),
     )
-    return h('div', { class: 'row' }, select)
+    return h('div', { class: 'row adding' }, select)
   }
 
   function make(item: Item): HTMLElement {

@@ -185,7 +185,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   }
 
   /** On a phone, upright or on its side, and where the page is magnified, the controls are one of the tabs. */
-  const narrow = matchMedia('(max-width: 56rem), (max-width: 76rem) and (max-height: 36rem)')
+  const narrow = matchMedia('screen and (max-width: 56rem), screen and (max-width: 76rem) and (max-height: 36rem)')
   function arrange(): void {
     const slot = tabs.panels.querySelector('.controls-slot')!
     if (narrow.matches) slot.append(notes, controls.element)

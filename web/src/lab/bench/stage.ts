@@ -3,6 +3,7 @@ import type { Place } from '../../viewer/contract'
 import { put as attribute, hide, say } from '../../viewer/elements'
 import { beside, capital } from '../../viewer/headline'
 import { WORDS } from '../../viewer/narration'
+import { printed } from '../../viewer/printing'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
@@ -307,6 +308,7 @@ export function createStage(app: App): Stage {
       viewer.theme = app.appearance
       viewer.projector = settings.projector
     }),
+    printed(host, viewer),
     () => viewer.dispose(),
   )
   return {

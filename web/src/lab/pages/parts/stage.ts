@@ -1,6 +1,7 @@
 /** A viewer in its frame, told of theme and projector, with a place for what went wrong. */
 
 import { say } from '../../../viewer/elements'
+import { printed } from '../../../viewer/printing'
 import type { Scene, Triple } from '../../../viewer/scene'
 import { createViewer, type Viewer, type ViewerOptions } from '../../../viewer/viewer'
 import { ApiError, isAbort } from '../../api'
@@ -34,7 +35,7 @@ export function createStage(app: App, { label, controls = true, kind = 'large', 
   const message = h('p', { class: 'theatre-problem', role: 'alert', hidden: true })
   const element = h('div', { class: `theatre theatre-${kind}`, role: 'group', 'aria-label': label }, view, message)
   const viewer = createViewer(view, { theme: app.appearance, controls, projector: app.settings.projector, ...seen })
-  undo.add(() => viewer.dispose())
+  undo.add(printed(view, viewer), () => viewer.dispose())
   undo.add(
     app.watchSettings((settings) => {
       viewer.theme = app.appearance
