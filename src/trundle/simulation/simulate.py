@@ -101,9 +101,7 @@ def simulate(
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
         title, scenario = described(system, start, times, method, title)
-    data = labels.dataset(system, samples, labels.attributes(title, chosen))
-    known = {} if samples.form is None else {"form": samples.form}
-    return Trajectory(data, system, start, chosen.name, samples.events, scenario, known)
+    return Trajectory._of(samples, labels.attributes(title, chosen), system, start, scenario)
 
 
 def described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:

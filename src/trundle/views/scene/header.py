@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def header_of(run: Trajectory, ground: Ground, radius: float) -> dict[str, Any]:
     """Return the part of a header that the system and the scenario give."""
     system, scenario = run.system, tables(run.scenario)
-    tilt, times = float(system.support.tilt), run.data["time"].values
+    tilt, times = float(system.support.tilt), run.samples.time
     return header_with(
         run.title or title_of(system),
         float(times[-1] - times[0]),
