@@ -5,10 +5,10 @@ Everything is written on (real, imaginary) pairs so that any scalar of `mechanic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import factorial, pi
 from typing import Any
 
+from ...mechanics.records import frozen_record
 from ...mechanics.scalars import Scalar, is_number, is_zero, less, namespace
 
 # φ₂ = Σ zⁿ/(n + 2)!: below |z| = 1 these terms leave less than 1e-17.
@@ -29,7 +29,7 @@ def _minus(a: Scalar, b: Scalar) -> Scalar:
     return a if is_zero(b) else -b if is_zero(a) else a - b
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Complex:
     """A point ζ = x + i y of the support's plane.
 
