@@ -6,19 +6,19 @@ balls, heyoka expressions or SymPy symbols.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .algebra import ZERO, Matrix, Quaternion, RotatedTensor, Vector, inertia_about
 from .loads import Acting, BodyMotion
 from .motions import SupportState
+from .records import frozen_record
 from .scalars import Scalar, is_zero
 
 if TYPE_CHECKING:
     from .system import RollingSystem
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Contact:
     """The geometry of touch at one instant, in the inertial support frame."""
 
@@ -106,7 +106,7 @@ class Contact:
         return velocity + angular_velocity.cross(self.offset) - self.support.material_velocity(self.point)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Rolling:
     """Rates of the state and the contact force of a body that rolls, in the inertial support frame."""
 

@@ -135,7 +135,7 @@ def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientati
     """
     if _is_beyond(system.support.surface, contact.support.local(contact.point)):
         return "There the support has ended."
-    covered = system.body.shape.validity_margin(-(orientation.matrix().transpose @ contact.normal))
+    covered = system.body.shape.validity_margin(-(contact.normal @ orientation.matrix()))
     if covered is not None and not covered > 0:
         return "There the body has a flat side or an edge towards the support, which its shape does not cover."
     if contact.flat:
