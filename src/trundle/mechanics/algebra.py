@@ -197,9 +197,12 @@ class Matrix:
 
     def solve(self, v: Vector) -> Vector:
         """Return x with (this matrix) x = v, by the cofactors: no pivoting, so that symbols can pass."""
-        p, q, r = self.transpose.rows
-        qr = q.cross(r)
-        return Vector(v.dot(qr), v.dot(r.cross(p)), v.dot(p.cross(q))) / p.dot(qr)
+        a, b, c = self.a, self.b, self.c
+        bc, ca, ab = b.cross(c), c.cross(a), a.cross(b)
+        x, y, z = v.x, v.y, v.z
+        return Vector(
+            x * bc.x + y * ca.x + z * ab.x, x * bc.y + y * ca.y + z * ab.y, x * bc.z + y * ca.z + z * ab.z
+        ) / (a.x * bc.x + b.x * ca.x + c.x * ab.x)
 
 
 @frozen_record()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -198,6 +198,15 @@ class RollingSystem:
     def all_loads(self) -> tuple[Load, ...]:
         """Gravity and the other loads."""
         return (self.weight, *self.loads)
+
+    @cached_property
+    def _known(self) -> dict[Any, Any]:
+        """What others have found out of it, by who they are: as it is frozen, that stays so."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return its parts; a copy finds out again what follows from them."""
+        return {part.name: getattr(self, part.name) for part in fields(self)}
 
     @property
     def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:

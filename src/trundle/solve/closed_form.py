@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..errors import OutOfDomainError, SolverError, TurnsTooFastError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.nearest import closest_contact
+from ..mechanics.records import frozen_record
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
@@ -147,7 +148,7 @@ def _values(system: RollingSystem, now: PhaseStart, form: ClosedForm, asked: lis
 # Samples
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class ClosedFormSegment:
     """What completes the orientations at some times to samples: the closed form that the body follows from a start."""
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.duals import value_of
 from ..mechanics.nearest import closest_contact
+from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
 
@@ -16,7 +17,7 @@ WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses th
 STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class ContactState:
     """A body at its contact: the geometry, how it moves there, and against what that is small or not."""
 
