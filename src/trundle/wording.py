@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from fractions import Fraction
 from typing import Any
 
@@ -115,6 +116,7 @@ def small_length(size: Any) -> str:
     return f"{float(size) * 1e3:.4g} mm" if 1e-3 <= float(size) < 0.1 else length(size)
 
 
+@lru_cache(maxsize=100)  # a ball's k is asked for again and again
 def as_ratio(value: float) -> str:
     """Write a number as a simple fraction where it is one, else with four digits.
 

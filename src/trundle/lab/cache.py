@@ -16,6 +16,7 @@ _WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "
 _PACKED = {"application/octet-stream": 3} | dict.fromkeys(_WORDY, 5)
 _SHORT = 1000  # bytes, that are sent as they are
 
+
 @dataclass(frozen=True)
 class Answer:
     """A whole answer, as a worker made it.

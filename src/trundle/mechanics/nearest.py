@@ -13,7 +13,7 @@ from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
     from .surfaces import Surface
-    from .system import RollingSystem
+    from .system import RollingSystem, State
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
@@ -99,6 +99,23 @@ def closest_contact(
             f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
         )
     return found
+
+
+def contact_of(system: RollingSystem, start: State) -> Contact:
+    """Return the geometry of touch of a state; a system keeps that of the last one that was asked about.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> contact_of(system, system.place((0.3, 0.0))).point
+    Vector(x=0.3, y=0.0, z=0.0)
+    """
+    known: tuple[State, Contact] | None = system._known.get(contact_of)
+    if known is None or known[0] is not start:
+        place = start.time, Vector(*start.position), Quaternion(*start.orientation), start.support
+        system._known[contact_of] = known = start, closest_contact(system, *place)
+    return known[1]
 
 
 def _with_slopes(

@@ -14,7 +14,7 @@ from ..mechanics import line_contact
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact
 from ..mechanics.finiteness import check_finite
-from ..mechanics.nearest import closest_contact, misplaced
+from ..mechanics.nearest import contact_of, misplaced
 from ..mechanics.placing import no_gap, slips
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
@@ -118,7 +118,7 @@ def described(system: RollingSystem, start: State, times: Any, method: str, titl
 def check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
-    contact = closest_contact(system, start.time, centre, q, start.support)
+    contact = contact_of(system, start)
     point = centre + contact.offset
     gap = (point - contact.point).dot(contact.normal)
     if not gap >= -no_gap(contact, start.position):

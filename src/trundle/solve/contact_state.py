@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.duals import value_of
-from ..mechanics.nearest import closest_contact
+from ..mechanics.nearest import contact_of
 from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
@@ -34,11 +34,9 @@ class ContactState:
     @staticmethod
     def of(system: RollingSystem, state: State, point: Vector | None = None) -> ContactState:
         """Return the contact of a state that touches the support, or is over it; it is searched for unless given."""
-        q = Quaternion(*state.orientation)
         if point is None:
-            return ContactState.at(
-                state, closest_contact(system, state.time, Vector(*state.position), q, state.support)
-            )
+            return ContactState.at(state, contact_of(system, state))
+        q = Quaternion(*state.orientation)
         return ContactState.at(state, contact_at(system, state.time, point, q, state.support))
 
     @staticmethod

@@ -85,7 +85,14 @@ class PhaseStart:
 
 
 def at_start(system: RollingSystem, start: State) -> PhaseStart:
-    """Return the phase in which a start finds itself."""
+    """Return the phase in which a start finds itself; a system keeps that of the last start that was asked about."""
+    known: tuple[State, PhaseStart] | None = system._known.get(at_start)
+    if known is None or known[0] is not start:
+        system._known[at_start] = known = start, _at_start(system, start)
+    return known[1]
+
+
+def _at_start(system: RollingSystem, start: State) -> PhaseStart:
     at = ContactState.of(system, start)
     if at.gap > no_gap(at.contact, start.position):
         return _fly(at)

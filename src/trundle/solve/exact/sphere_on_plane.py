@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -138,7 +139,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         """κ = ω k/(1 + k), the rate of the circle, rad/s."""
         return self._kappa_pair[0]
 
-    @property
+    @cached_property
     def _kappa_pair(self) -> tuple[Scalar, Scalar]:
         return quotient_times(self.rate, self.inertia_ratio)
 
@@ -147,7 +148,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         """γ = c/(m(1 + k)), the rate at which drag slows the ball, 1/s."""
         return 0.0 if is_zero(self.drag) else self.drag / (self.mass * (1 + self.inertia_ratio))
 
-    @property
+    @cached_property
     def phi(self) -> Complex:
         """φ = [F_x + iF_y + (K_y − iK_x)/a]/(m(1 + k)), the acceleration that the loads give, m/s²."""
         (fx, fy, _), (kx, ky, _) = self.force, self.torque
