@@ -142,7 +142,11 @@ def normal_at(system: RollingSystem, time: Scalar, point: Vector, coordinates: t
     >>> normal_at(level, 0.0, Vector(0.4, 0.0, 0.0))
     Vector(x=0.0, y=0.0, z=1.0)
     """
-    support = system.support.motion.at(time, *coordinates)
+    return normal_on(system, system.support.motion.at(time, *coordinates), point)
+
+
+def normal_on(system: RollingSystem, support: SupportState, point: Vector) -> Vector:
+    """Return the same where the support's pose is known."""
     return support.rotation @ system.support.surface.normal(support.local(point))
 
 

@@ -6,6 +6,7 @@ holds may go unnamed, one that does not is never named.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from .algebra import E_Z, ZERO, Matrix, Quaternion, Vector
@@ -279,6 +280,14 @@ def free_axle(motion: Motion) -> Any:
     """
     if not motion.free or motion.coordinates != ("angle", "rate"):
         return None
+    try:
+        return _free_axle(motion)  # several of the invariants ask
+    except TypeError:  # numbers of many members have no hash
+        return _free_axle.__wrapped__(motion)
+
+
+@lru_cache(maxsize=100)
+def _free_axle(motion: Any) -> Any:
     try:
         idle = all(is_zero(motion.axle_torque(t, (0.613, rate))) for t in _INSTANTS for rate in (-1.7, 0.9))
         still = all(is_zero(part) for t in _INSTANTS for part in motion.at(t, 0.613, 0.9).origin)
