@@ -6,13 +6,12 @@ holds may go unnamed, one that does not is never named.
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from .algebra import E_Z, ZERO, Matrix, Quaternion, Vector
 from .loads import BodyMotion, Load, at_rest
 from .motions import Motion
-from .records import frozen_record
+from .records import frozen_record, remembered
 from .scalars import is_number, is_zero
 
 if TYPE_CHECKING:
@@ -194,6 +193,7 @@ class Ball:
         return tuple(self.centre) == (0.0, 0.0, 0.0)
 
 
+@remembered
 def ball_of(body: Body) -> Ball | None:
     """Return what a body is as a sphere that can roll any way.
 
@@ -269,6 +269,7 @@ def symmetric_potential(system: RollingSystem) -> bool:
     return all(conservative(load) and load.symmetric for load in system.all_loads)
 
 
+@remembered
 def free_axle(motion: Motion) -> Any:
     """Return the moment of inertia of a table that turns freely on its axle.
 
@@ -280,14 +281,6 @@ def free_axle(motion: Motion) -> Any:
     """
     if not motion.free or motion.coordinates != ("angle", "rate"):
         return None
-    try:
-        return _free_axle(motion)  # several of the invariants ask
-    except TypeError:  # numbers of many members have no hash
-        return _free_axle.__wrapped__(motion)
-
-
-@lru_cache(maxsize=100)
-def _free_axle(motion: Any) -> Any:
     try:
         idle = all(is_zero(motion.axle_torque(t, (0.613, rate))) for t in _INSTANTS for rate in (-1.7, 0.9))
         still = all(is_zero(part) for t in _INSTANTS for part in motion.at(t, 0.613, 0.9).origin)

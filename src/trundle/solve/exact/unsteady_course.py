@@ -128,11 +128,11 @@ class Course:
             gained = 1j * form.share * (rates[j] - before[j]) * zeta[j] + driven[j]
             velocity.append(complex((1j * form.share * rates[j] - form.gamma) * gone + velocity[j] + gained))
             zeta.append(complex(zeta[j] + gone))
-        values = np.stack([omega, couple, np.array(weighted), push], axis=1)
-        tail, size = np.abs(values @ this.coefficients[-2:].T).max(axis=2), np.abs(values).max(axis=2)
+        four = np.stack([omega, couple, np.array(weighted), push], axis=1)
+        tail, size = np.abs(four @ this.coefficients[-2:].T).max(axis=2), np.abs(four).max(axis=2)
         size[:, 0] = np.maximum(size[:, 0], 1 / (form.share * half + 1e-300))
         size[:, 3] += size[:, 2] / half
-        slope = np.abs(np.diff(values) / np.diff(times)[:, None]).max(axis=2)
+        slope = np.abs(np.diff(four) / np.diff(times)[:, None]).max(axis=2)
         noise = 2e-15 * (abs(form.start_time) + times[:, :1] + self.length) * slope  # from rounding of the time itself
         noise[:, 2] += 1e-15 * form.share * largest[:count] * np.abs(zeta[:-1])  # from what is carried, a difference
         smooth = ~(tail > _SHARE * size + noise + _NOTHING).any(axis=1)
@@ -146,7 +146,7 @@ class Course:
                     f't = {form.start_time + begins[0]:.6g} s. Use method="taylor" or method="runge-kutta".'
                 )
         count = _leading(smooth) or 1
-        series = half * (this.antiderivative @ values[:count].swapaxes(1, 2))
+        series = half * (this.antiderivative @ four[:count].swapaxes(1, 2))
         self.series += [(each[:, :2].real, each[:, 2:]) for each in series]
         self.zeta += zeta[1 : count + 1]
         self.velocity += velocity[1 : count + 1]
