@@ -256,8 +256,8 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     if straight is not None:
         axis, angle = straight
         half, q = np.broadcast_to(0.5 * np.asarray(angle), times.shape), Quaternion(*start.orientation)
-        across = Quaternion(0.0, *axis) * q
-        return np.multiply.outer(np.cos(half), q.array()) + np.multiply.outer(np.sin(half), across.array())
+        both = np.array([[*q], [*(Quaternion(0.0, *axis) * q)]], dtype=float)
+        return np.array([np.cos(half), np.sin(half)]).T @ both
 
     def angular_velocity(t: Array) -> Array:
         Omega = motion.motion_at(t)[2]

@@ -72,15 +72,17 @@ class ContactState:
     ) -> ContactState:
         """Return the body at the same place with other velocities, also of the support's own motion."""
         coordinates = self.state.support if support is None else support
-        state = replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=coordinates)
+        was = self.state
+        state = State(was.position, floats(V), floats(Omega), was.orientation, was.time, coordinates)
         if coordinates == self.state.support:  # which is all of the motion that the geometry of touch depends on
             return ContactState.at(state, self.contact)
         return ContactState.of(system, state, self.contact.point)
 
     def over(self, gap: float) -> ContactState:
         """Return the body moved along the normal until it is so far over the support, m."""
-        centre = self.contact.centre + self.contact.normal * gap
-        return replace(self, state=replace(self.state, position=floats(centre)), gap=gap)
+        centre, was = self.contact.centre + self.contact.normal * gap, self.state
+        moved = State(floats(centre), was.velocity, was.angular_velocity, was.orientation, was.time, was.support)
+        return replace(self, state=moved, gap=gap)
 
     def scale(self, system: RollingSystem) -> float:
         """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""
