@@ -49,7 +49,9 @@ def remembered(function: Callable[[Any], T]) -> Callable[[Any], T]:
 
     @wraps(function)
     def answer(part: Any) -> T:
-        kept = vars(part)
+        kept = getattr(part, "__dict__", None)
+        if kept is None:  # it has no room for that
+            return function(part)
         if name not in kept:
             kept[name] = function(part)
         found: T = kept[name]

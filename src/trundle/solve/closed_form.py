@@ -260,7 +260,7 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
         return np.array([np.cos(half), np.sin(half)]).T @ both
 
     def angular_velocity(t: Array) -> Array:
-        Omega = motion.motion_at(t)[2]
+        Omega = motion.angular_velocity_at(t)
         return np.stack(np.broadcast_arrays(Omega.x, Omega.y, Omega.z, t))[:3]
 
     def absolute(t: Array) -> Array:

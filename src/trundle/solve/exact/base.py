@@ -199,6 +199,21 @@ class ClosedForm:
         """
         raise NotImplementedError
 
+    def angular_velocity_at(self, t: Any) -> Vector:
+        """Return Ω of `motion_at` alone: override it where that is much less work.
+
+        Parameters
+        ----------
+        t : float or array
+            Since the start, s.
+
+        Returns
+        -------
+        Vector
+            rad/s.
+        """
+        return self.motion_at(t)[2]
+
     def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         """Return by how much the coordinates of the support's own motion have grown.
 
