@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from .errors import InvalidValueError
@@ -174,6 +174,7 @@ def _as_float(value: int | float, key: str) -> float:
         raise InvalidValueError(key, "must be a finite number", "an integer beyond 1e308") from None
 
 
+@lru_cache(maxsize=1000)  # while one number is tried out, the others of its file stay
 def _from_text(text: str, kind: str, key: str) -> float:
     plain = text.replace("\u2212", "-").replace("\u00a0", " ").strip()
     match = _NUMBER.fullmatch(plain) if len(plain) <= _LONGEST else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 LONGEST = 34  # letters of a formula that are shown
@@ -115,6 +116,7 @@ def small_length(size: Any) -> str:
     return f"{float(size) * 1e3:.4g} mm" if 1e-3 <= float(size) < 0.1 else length(size)
 
 
+@lru_cache(maxsize=100)  # a ball's k is asked for again and again
 def as_ratio(value: float) -> str:
     """Write a number as a simple fraction where it is one, else with four digits.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import gzip
 from collections.abc import Callable
 from functools import partial
 from tempfile import TemporaryDirectory
@@ -13,16 +12,11 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from . import answers
-from .cache import Answer, Cache, key_of
+from .cache import Answer, Cache, key_of, packed
 from .errors import Refusal, RefusedError
 from .films import Films
 from .lanes import Lanes
-from .requests import SCENE
 from .settings import Settings
-
-_WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")
-# What is worth compressing, and how hard gzip tries: of numbers, as in a scene, more hardly saves more.
-_PACKED = {SCENE: 3} | dict.fromkeys(_WORDY, 5)
 
 
 class Lab:
@@ -125,7 +119,7 @@ class Lab:
         most: float | None = None,
     ) -> Answer:
         """Compute, and keep what came out."""
-        found = await self.lanes.run(request, slow, function, *arguments, most=most)
+        found = await self.lanes.run(request, slow, packed, function, *arguments, most=most)
         self.ready = True
         if isinstance(found, Refusal):
             raise RefusedError(found)
@@ -134,32 +128,25 @@ class Lab:
 
     async def _here(self, key: str, function: Callable[..., Answer | Refusal], arguments: Any) -> Answer:
         """Compute in a thread, and keep what came out."""
-        found = await asyncio.to_thread(function, *arguments)
+        found = await asyncio.to_thread(packed, function, *arguments)
         if isinstance(found, Refusal):
             raise RefusedError(found)
         self.cache.put(key, found)
         return found
 
     async def _response(self, key: str, found: Answer, request: Request) -> Response:
-        """Return an answer as HTTP, packed where the client takes that: once, and while others are answered."""
+        """Return an answer as HTTP, unpacked where the client asks for that."""
         headers = {"etag": _tag(key), "cache-control": "no-cache"}
         body = found.body
         if found.filename:
             headers["content-disposition"] = f'attachment; filename="{found.filename}"'
-        level = _PACKED.get(found.media_type.partition(";")[0])
-        if level is not None and len(body) > 1000:
+        if found.packed:
             headers["vary"] = "accept-encoding"
             if "gzip" in request.headers.get("accept-encoding", ""):
-                body = await self._packed(f"{key} packed", body, level)
                 headers["content-encoding"] = "gzip"
+            else:
+                body = await asyncio.to_thread(lambda: found.plain)
         return Response(body, headers=headers, media_type=found.media_type)
-
-    async def _packed(self, key: str, body: bytes, level: int) -> bytes:
-        found = self.cache.get(key)
-        if found is None:
-            found = Answer(await asyncio.to_thread(gzip.compress, body, level), "application/gzip")
-            self.cache.put(key, found)
-        return found.body
 
 
 def _tag(key: str) -> str:

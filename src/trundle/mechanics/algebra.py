@@ -146,6 +146,15 @@ class Matrix:
             return Matrix(columns @ self.a, columns @ self.b, columns @ self.c)  # row by row, dot products commute
         return Vector(self.a.dot(other), self.b.dot(other), self.c.dot(other))
 
+    def __rmatmul__(self, v: Vector) -> Vector:
+        """Return vᵀ M, which is Mᵀ v."""
+        a, b, c = self.a, self.b, self.c
+        return Vector(
+            a.x * v.x + b.x * v.y + c.x * v.z,
+            a.y * v.x + b.y * v.y + c.y * v.z,
+            a.z * v.x + b.z * v.y + c.z * v.z,
+        )
+
     @property
     def rows(self) -> tuple[Vector, Vector, Vector]:
         """The three rows."""
@@ -188,9 +197,12 @@ class Matrix:
 
     def solve(self, v: Vector) -> Vector:
         """Return x with (this matrix) x = v, by the cofactors: no pivoting, so that symbols can pass."""
-        p, q, r = self.transpose.rows
-        qr = q.cross(r)
-        return Vector(v.dot(qr), v.dot(r.cross(p)), v.dot(p.cross(q))) / p.dot(qr)
+        a, b, c = self.a, self.b, self.c
+        bc, ca, ab = b.cross(c), c.cross(a), a.cross(b)
+        x, y, z = v.x, v.y, v.z
+        return Vector(
+            x * bc.x + y * ca.x + z * ab.x, x * bc.y + y * ca.y + z * ab.y, x * bc.z + y * ca.z + z * ab.z
+        ) / (a.x * bc.x + b.x * ca.x + c.x * ab.x)
 
 
 @frozen_record()
@@ -256,8 +268,13 @@ class RoundTensor(Matrix):
     @staticmethod
     def of(size: Scalar, n: Vector) -> RoundTensor:
         """Return c(1 − n nᵀ)."""
-        made = (Matrix.identity() - Matrix.outer(n, n)) * size
-        return RoundTensor(made.a, made.b, made.c, size)
+        x, y, z = n
+        return RoundTensor(
+            Vector((1.0 - x * x) * size, (0.0 - y * x) * size, (0.0 - z * x) * size),
+            Vector((0.0 - x * y) * size, (1.0 - y * y) * size, (0.0 - z * y) * size),
+            Vector((0.0 - x * z) * size, (0.0 - y * z) * size, (1.0 - z * z) * size),
+            size,
+        )
 
     def __mul__(self, factor: Scalar) -> RoundTensor:
         return RoundTensor(self.a * factor, self.b * factor, self.c * factor, self.size * factor)
@@ -300,11 +317,11 @@ class RotatedTensor:
     own: Matrix  # M, symmetric, along those axes
 
     def __matmul__(self, v: Vector) -> Vector:
-        return self.turn @ (self.own @ (self.turn.transpose @ v))
+        return self.turn @ (self.own @ (v @ self.turn))
 
     def on_tangent(self, v: Vector) -> Vector:
         """Return Q M Qᵀ v, as `Matrix.on_tangent`."""
-        return self.turn @ self.own.on_tangent(self.turn.transpose @ v)
+        return self.turn @ self.own.on_tangent(v @ self.turn)
 
     def trace_with(self, other: Any) -> Scalar:
         """Return tr(Q M Qᵀ N), as `Matrix.trace_with`."""

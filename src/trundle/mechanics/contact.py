@@ -6,19 +6,19 @@ balls, heyoka expressions or SymPy symbols.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .algebra import ZERO, Matrix, Quaternion, RotatedTensor, Vector, inertia_about
 from .loads import Acting, BodyMotion
 from .motions import SupportState
+from .records import frozen_record
 from .scalars import Scalar, is_zero
 
 if TYPE_CHECKING:
     from .system import RollingSystem
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Contact:
     """The geometry of touch at one instant, in the inertial support frame."""
 
@@ -106,7 +106,7 @@ class Contact:
         return velocity + angular_velocity.cross(self.offset) - self.support.material_velocity(self.point)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Rolling:
     """Rates of the state and the contact force of a body that rolls, in the inertial support frame."""
 
@@ -142,7 +142,11 @@ def normal_at(system: RollingSystem, time: Scalar, point: Vector, coordinates: t
     >>> normal_at(level, 0.0, Vector(0.4, 0.0, 0.0))
     Vector(x=0.0, y=0.0, z=1.0)
     """
-    support = system.support.motion.at(time, *coordinates)
+    return normal_on(system, system.support.motion.at(time, *coordinates), point)
+
+
+def normal_on(system: RollingSystem, support: SupportState, point: Vector) -> Vector:
+    """Return the same where the support's pose is known."""
     return support.rotation @ system.support.surface.normal(support.local(point))
 
 

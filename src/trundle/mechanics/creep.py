@@ -6,11 +6,11 @@ just begun, or will soon end, is therefore all but settled: ŝ follows from wher
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .algebra import Quaternion, Vector
 from .contact import Contact
+from .records import frozen_record
 from .scalars import Scalar, namespace
 from .slipping import response, unpushed, unturned
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _STEPS = 5  # of Newton's method, each of which squares the error
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class SlipRates:
     """How s changes at one instant for friction against any direction ŝ = e₁ cos β + e₂ sin β (T4, with ŝ free).
 

@@ -16,7 +16,7 @@ from ..errors import InvalidValueError
 from . import checks
 from .algebra import Vector
 from .jets import Jet, jets
-from .scalars import Scalar, namespace
+from .scalars import Scalar, is_number, leaves, namespace
 
 FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log", "abs", "hypot")
 _TWO_ARGUMENTS = ("hypot",)
@@ -77,7 +77,8 @@ class Expression:
 
     @cached_property
     def _constants(self) -> tuple[Any, ...]:
-        return _numbers(self.tree)
+        """Those that are no plain numbers: they decide which functions fit."""
+        return tuple(part for part in leaves(_numbers(self.tree)) if not is_number(part))
 
     @property
     def variables(self) -> frozenset[str]:

@@ -7,11 +7,13 @@ interval is halved, from its beginning on, until either they are or the instant 
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass
+from functools import lru_cache
 from typing import Any
 
 from ..errors import InvalidValueError
 from .algebra import Vector
 from .expressions import Expression
+from .records import remembered
 
 _MOST_LOOKS = 4000
 _FINEST = 1e-12  # of the run: an instant is found to this
@@ -23,6 +25,7 @@ class _UnclearError(Exception):
     """The bounds over an interval do not say that a formula and its slopes are finite there."""
 
 
+@lru_cache(maxsize=100)  # a scenario is checked when it is read, and before it is run
 def first_singular(formula: Expression, start: float, end: float) -> float | None:
     """Return the first instant at which a formula in t, or its slope, is not finite.
 
@@ -62,19 +65,29 @@ def check_finite(thing: Any, start: float, end: float, key: str = "") -> None:
     trundle.errors.InvalidValueError: `support.motion.rate` must be finite, with its slopes, throughout the run; got \
 '1/(t - 3)'. It is not at t = 3 s.
     """
-    if isinstance(thing, Expression):
+    for place, formula in _formulas(thing):
         near = (start - _NEAR * abs(start), end + _NEAR * abs(end))
-        if thing.variables <= {"t"} and (instant := first_singular(thing, *near)) is not None:
+        if (instant := first_singular(formula, *near)) is not None:
             remedy = f"It is not at t = {instant + 0.0:.9g} s."
             if not start <= instant <= end:
                 remedy += " Begin later than that." if instant < start else " End the run sooner before that."
-            raise InvalidValueError(key, "must be finite, with its slopes, throughout the run", thing.text, remedy)
-    elif isinstance(thing, (tuple, Vector)):
-        for i, part in enumerate(thing):
-            check_finite(part, start, end, f"{key}[{i}]")
-    elif is_dataclass(thing):
-        for field in fields(thing):
-            check_finite(getattr(thing, field.name), start, end, f"{key}.{field.name}" if key else field.name)
+            rule = "must be finite, with its slopes, throughout the run"
+            raise InvalidValueError((key + place).removeprefix("."), rule, formula.text, remedy)
+
+
+def _formulas(thing: Any) -> tuple[tuple[str, Expression], ...]:
+    """Return the formulas in t of a system, or of a part of it, each with its place in that."""
+    if isinstance(thing, Expression):
+        return (("", thing),) if thing.variables <= {"t"} else ()
+    if isinstance(thing, (tuple, Vector)):
+        return tuple((f"[{i}]{place}", found) for i, part in enumerate(thing) for place, found in _formulas(part))
+    return _formulas_of_part(thing) if is_dataclass(thing) and not isinstance(thing, type) else ()
+
+
+@remembered
+def _formulas_of_part(part: Any) -> tuple[tuple[str, Expression], ...]:
+    places = ((f".{field.name}", getattr(part, field.name)) for field in fields(part))
+    return tuple((place + further, found) for place, value in places for further, found in _formulas(value))
 
 
 def varies(thing: Any) -> bool:
@@ -86,11 +99,7 @@ def varies(thing: Any) -> bool:
     >>> varies(SpinBy("1/(t - 3)")), varies(Spin(1.0))
     (True, False)
     """
-    if isinstance(thing, Expression):
-        return thing.variables <= {"t"}
-    if isinstance(thing, (tuple, Vector)):
-        return any(varies(part) for part in thing)
-    return is_dataclass(thing) and any(varies(getattr(thing, field.name)) for field in fields(thing))
+    return bool(_formulas(thing))
 
 
 def _bounds(tree: Any, a: float, b: float) -> Any:

@@ -141,6 +141,8 @@ def too_big(contact: Contact) -> str:
     >>> too_big(contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)))[:68]
     'There the body bends with a radius of 0.6 m, the surface with 0.5 m:'
     """
+    if contact.flat:
+        return ""
     least, along = room(contact)
     if least > LEAST_ROOM:
         return ""

@@ -18,6 +18,7 @@ from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
 from .duals import value_of
 from .onset import onset
+from .records import frozen_record
 from .scalars import as_float, is_zero, less, namespace
 from .slipping import response
 from .turning_slip import TurningSlip
@@ -30,7 +31,7 @@ _STRAIGHT = 1e-15  # share of M by which slip that goes on along one line seems 
 _MOST_PIECES = 20
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class Impact:
     """What a landing does."""
 

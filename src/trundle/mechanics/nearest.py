@@ -13,7 +13,7 @@ from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
     from .surfaces import Surface
-    from .system import RollingSystem
+    from .system import RollingSystem, State
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
@@ -101,6 +101,23 @@ def closest_contact(
     return found
 
 
+def contact_of(system: RollingSystem, start: State) -> Contact:
+    """Return the geometry of touch of a state; a system keeps that of the last one that was asked about.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> contact_of(system, system.place((0.3, 0.0))).point
+    Vector(x=0.3, y=0.0, z=0.0)
+    """
+    known: tuple[State, Contact] | None = system._known.get(contact_of)
+    if known is None or known[0] is not start:
+        place = start.time, Vector(*start.position), Quaternion(*start.orientation), start.support
+        system._known[contact_of] = known = start, closest_contact(system, *place)
+    return known[1]
+
+
 def _with_slopes(
     system: RollingSystem, time: Scalar, centre: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...]
 ) -> Contact:
@@ -135,7 +152,7 @@ def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientati
     """
     if _is_beyond(system.support.surface, contact.support.local(contact.point)):
         return "There the support has ended."
-    covered = system.body.shape.validity_margin(-(orientation.matrix().transpose @ contact.normal))
+    covered = system.body.shape.validity_margin(-(contact.normal @ orientation.matrix()))
     if covered is not None and not covered > 0:
         return "There the body has a flat side or an edge towards the support, which its shape does not cover."
     if contact.flat:

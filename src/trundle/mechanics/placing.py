@@ -109,7 +109,7 @@ class Placing:
         """Return the contact there, or say that the body would touch on a side that its shape does not cover."""
         try:
             contact = contact_at(self.system, self._now, point, q, self._own)
-            covered = self.system.body.shape.validity_margin(-(q.matrix().transpose @ contact.normal))
+            covered = self.system.body.shape.validity_margin(-(contact.normal @ q.matrix()))
         except (ArithmeticError, ValueError):
             covered = 0.0
         if covered is None or covered > fitting.EDGE:

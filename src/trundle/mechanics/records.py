@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar, dataclass_transform
+from functools import wraps
+from typing import Any, TypeVar, dataclass_transform
 
 T = TypeVar("T")
 
@@ -25,3 +26,35 @@ def frozen_record(*, eq: bool = True) -> Callable[[type[T]], type[T]]:
     Pair(first=1.0, second=2.0)
     """
     return dataclass(slots=True, eq=eq, unsafe_hash=eq)
+
+
+def remembered(function: Callable[[Any], T]) -> Callable[[Any], T]:
+    """Let a frozen part keep what a function of it returned: as a cached property, of a part that knows nothing of it.
+
+    Examples
+    --------
+    >>> @dataclass(frozen=True)
+    ... class Side:
+    ...     length: float
+    >>> @remembered
+    ... def square(side):
+    ...     print("multiplied")
+    ...     return side.length**2
+    >>> side = Side(3.0)
+    >>> square(side), square(side)
+    multiplied
+    (9.0, 9.0)
+    """
+    name = f"_{function.__name__}"
+
+    @wraps(function)
+    def answer(part: Any) -> T:
+        kept = getattr(part, "__dict__", None)
+        if kept is None:  # it has no room for that
+            return function(part)
+        if name not in kept:
+            kept[name] = function(part)
+        found: T = kept[name]
+        return found
+
+    return answer

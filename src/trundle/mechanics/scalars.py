@@ -48,6 +48,8 @@ def as_float(value: Any) -> Any:
     >>> as_float(2), as_float("x")
     (2.0, 'x')
     """
+    if type(value) is float:
+        return value
     return float(value) if is_number(value) else value
 
 
@@ -168,7 +170,9 @@ def namespace(*values: Any) -> Any:
     >>> namespace(4.0).sqrt(4.0)
     2.0
     """
-    others = [value for value in leaves(values) if not is_number(value)]
+    others = [value for value in leaves(values) if type(value) is not float and not is_number(value)]
+    if not others:
+        return _Python
     kinds = {type(value).__name__ for value in others}
     if "Jet" in kinds:
         from .jets import JetFunctions

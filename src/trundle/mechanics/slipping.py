@@ -6,19 +6,19 @@ moves by itself, and the support's point nearest to the body and the gap between
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .algebra import ZERO, Matrix, Quaternion, Vector
 from .contact import Contact, contact_at
 from .loads import Acting, BodyMotion
+from .records import frozen_record
 from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
     from .system import RollingSystem
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Slipping:
     """Rates of the state and the contact force of a body that slips, in the inertial support frame."""
 
@@ -35,7 +35,7 @@ class Slipping:
     holding: Vector = ZERO  # the couple that keeps it from turning over the support, N m
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class HeldInertia:
     """The inertia of a body that a couple keeps from turning over the support: it answers about the normal alone."""
 
@@ -48,7 +48,7 @@ class HeldInertia:
         return n * (n.dot(torque) / n.dot(self.tensor @ n))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Unpushed:
     """How a body at a contact would move on if the support did not push."""
 
@@ -62,7 +62,7 @@ class Unpushed:
     holding: Vector = ZERO  # the couple that keeps it from turning over the support, N m
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Response:
     """What a push at the contact does, for a force the rates and for an impulse the changes."""
 
@@ -70,7 +70,7 @@ class Response:
     slip: Vector  # of s
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Flying:
     """Rates of the state of a body that touches nothing, in the inertial support frame."""
 

@@ -6,12 +6,12 @@ holds may go unnamed, one that does not is never named.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .algebra import E_Z, ZERO, Matrix, Quaternion, Vector
 from .loads import BodyMotion, Load, at_rest
 from .motions import Motion
+from .records import frozen_record, remembered
 from .scalars import is_number, is_zero
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def frictionless(system: RollingSystem) -> bool:
     return coefficient is not None and is_zero(coefficient)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Ball:
     """A sphere, its own centre at c from the centre of mass, as its integrals see it."""
 
@@ -193,6 +193,7 @@ class Ball:
         return tuple(self.centre) == (0.0, 0.0, 0.0)
 
 
+@remembered
 def ball_of(body: Body) -> Ball | None:
     """Return what a body is as a sphere that can roll any way.
 
@@ -268,6 +269,7 @@ def symmetric_potential(system: RollingSystem) -> bool:
     return all(conservative(load) and load.symmetric for load in system.all_loads)
 
 
+@remembered
 def free_axle(motion: Motion) -> Any:
     """Return the moment of inertia of a table that turns freely on its axle.
 

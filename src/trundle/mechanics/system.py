@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
 from ..display import Displayed, Markup, number, numbers, pairs
@@ -181,7 +182,7 @@ class RollingSystem:
         object.__setattr__(self, "loads", tuple(load.over(self.support.motion) for load in loads))
         object.__setattr__(self, "gravity", checks.non_negative(self.gravity, "acceleration", "gravity"))
 
-    @property
+    @cached_property  # asked for at every instant at which forces are
     def weight(self) -> Gravity:
         """Gravity in the support frame: g(sin α, 0, −cos α)."""
         tilt = self.support.tilt
@@ -193,10 +194,19 @@ class RollingSystem:
             normal = xp.sin(0.5 * math.pi - xp.where(less(value_of(tilt), 0.0), -tilt, tilt))
         return Gravity(self.gravity * xp.sin(tilt), 0.0, -(self.gravity * normal))
 
-    @property
+    @cached_property
     def all_loads(self) -> tuple[Load, ...]:
         """Gravity and the other loads."""
         return (self.weight, *self.loads)
+
+    @cached_property
+    def _known(self) -> dict[Any, Any]:
+        """What others have found out of it, by who they are: as it is frozen, that stays so."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return its parts; a copy finds out again what follows from them."""
+        return {part.name: getattr(self, part.name) for part in fields(self)}
 
     @property
     def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:

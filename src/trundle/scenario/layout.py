@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import tomli_w
@@ -40,6 +41,14 @@ def _value(value: Any) -> str:
     value = written(value)
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_value(part) for part in value) + "]"
+    return _text(value) if isinstance(value, str) else _plain(value, lines=False)
+
+
+@lru_cache(maxsize=1000)  # while one number is tried out, the others of its file stay
+def _text(value: str) -> str:
     # A text of several lines reads better as one, but TOML would turn its "\r\n" into "\n".
-    lines = isinstance(value, str) and "\n" in value and "\r" not in value
+    return _plain(value, lines="\n" in value and "\r" not in value)
+
+
+def _plain(value: Any, *, lines: bool) -> str:
     return tomli_w.dumps({"v": value}, multiline_strings=lines).removeprefix("v = ").removesuffix("\n")

@@ -159,8 +159,9 @@ def attributes(title: str, method: Method) -> dict[str, Any]:
     >>> attributes("A ball", Method("taylor", 1e-9))["tolerance"]
     1e-09
     """
-    compiler = ["numba"] if available() else []
-    packages = {"taylor": ["heyoka"], "runge-kutta": ["scipy", *compiler]}.get(method.name, [])
+    packages = {"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method.name, [])
+    if method.name == "runge-kutta" and available():
+        packages.append("numba")
     return {
         "Conventions": "CF-1.11",
         "title": title,

@@ -14,7 +14,7 @@ from ..mechanics import line_contact
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact
 from ..mechanics.finiteness import check_finite
-from ..mechanics.nearest import closest_contact, misplaced
+from ..mechanics.nearest import contact_of, misplaced
 from ..mechanics.placing import no_gap, slips
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
@@ -101,9 +101,7 @@ def simulate(
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
         title, scenario = described(system, start, times, method, title)
-    data = labels.dataset(system, samples, labels.attributes(title, chosen))
-    known = {} if samples.form is None else {"form": samples.form}
-    return Trajectory(data, system, start, chosen.name, samples.events, scenario, known)
+    return Trajectory._of(samples, labels.attributes(title, chosen), system, start, scenario)
 
 
 def described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:
@@ -120,7 +118,7 @@ def described(system: RollingSystem, start: State, times: Any, method: str, titl
 def check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
-    contact = closest_contact(system, start.time, centre, q, start.support)
+    contact = contact_of(system, start)
     point = centre + contact.offset
     gap = (point - contact.point).dot(contact.normal)
     if not gap >= -no_gap(contact, start.position):

@@ -64,10 +64,24 @@ class Trajectory(Viewable, Plottable):
     events: tuple[Event, ...] = ()
     scenario: str = ""
     # What was once asked for, or is known from elsewhere: `form`; `card`, with the facts it speaks of; `view`, the run
-    # of which this is another view, with the facts of the view; `file`, from which it was loaded.
+    # of which this is another view, with the facts of the view; `file`, from which it was loaded; `made`, samples and
+    # attributes, of which `data` is made once it is asked for.
     _kept: dict[str, Any] = field(default_factory=dict, compare=False)
 
+    @staticmethod
+    def _of(
+        samples: Samples, attributes: dict[str, Any], system: RollingSystem, start: State, scenario: str
+    ) -> Trajectory:
+        """Return the run that a method sampled; a viewer needs no dataset of it."""
+        kept = {"made": (samples, attributes)} | ({} if samples.form is None else {"form": samples.form})
+        run = Trajectory(None, system, start, attributes["method"], samples.events, scenario, kept)  # type: ignore[arg-type]
+        del vars(run)["data"]
+        return run
+
     def __getattr__(self, name: str) -> Any:
+        if name == "data" and "made" in self._kept:
+            vars(self)[name] = data = labels.dataset(self.system, *self._kept["made"])
+            return data
         if name.startswith("_"):
             raise AttributeError(name)
         raise UnknownNameError("attribute of a Trajectory", name, _public_names())
@@ -75,17 +89,22 @@ class Trajectory(Viewable, Plottable):
     @property
     def frame(self) -> str:
         """The frame of the vectors: "support", "world" or "corotating"."""
-        return str(self.data.attrs["frame"])
+        return str(self._attributes["frame"])
 
     @property
     def title(self) -> str:
         """The scenario's title."""
-        return str(self.data.attrs.get("title", ""))
+        return str(self._attributes.get("title", ""))
 
     @property
     def tolerance(self) -> float:
         """The tolerance of the method; 0 for a closed form."""
-        return float(self.data.attrs["tolerance"])
+        return float(self._attributes["tolerance"])
+
+    @property
+    def _attributes(self) -> dict[Any, Any]:
+        """What the dataset says of itself."""
+        return self.data.attrs if "data" in vars(self) else self._kept["made"][1]
 
     @property
     def changed(self) -> tuple[str, ...] | None:
@@ -103,6 +122,8 @@ class Trajectory(Viewable, Plottable):
     @property
     def samples(self) -> Samples:
         """The arrays in the inertial support frame, as the methods and the card take them."""
+        if "data" not in vars(self):
+            return self._kept["made"][0]
         data = self.in_frame("support").data
         names = {part.name for part in fields(Samples)} & {"time", *labels.facts(self.system)}
         coordinates = [data[name].values for name in labels.coordinate_names(self.system)]

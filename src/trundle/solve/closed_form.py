@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..errors import OutOfDomainError, SolverError, TurnsTooFastError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.nearest import closest_contact
+from ..mechanics.records import frozen_record
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
@@ -147,7 +148,7 @@ def _values(system: RollingSystem, now: PhaseStart, form: ClosedForm, asked: lis
 # Samples
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class ClosedFormSegment:
     """What completes the orientations at some times to samples: the closed form that the body follows from a start."""
 
@@ -255,11 +256,11 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     if straight is not None:
         axis, angle = straight
         half, q = np.broadcast_to(0.5 * np.asarray(angle), times.shape), Quaternion(*start.orientation)
-        across = Quaternion(0.0, *axis) * q
-        return np.multiply.outer(np.cos(half), q.array()) + np.multiply.outer(np.sin(half), across.array())
+        both = np.array([[*q], [*(Quaternion(0.0, *axis) * q)]], dtype=float)
+        return np.array([np.cos(half), np.sin(half)]).T @ both
 
     def angular_velocity(t: Array) -> Array:
-        Omega = motion.motion_at(t)[2]
+        Omega = motion.angular_velocity_at(t)
         return np.stack(np.broadcast_arrays(Omega.x, Omega.y, Omega.z, t))[:3]
 
     def absolute(t: Array) -> Array:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.duals import value_of
-from ..mechanics.nearest import closest_contact
+from ..mechanics.nearest import contact_of
+from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
 
@@ -16,7 +17,7 @@ WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses th
 STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class ContactState:
     """A body at its contact: the geometry, how it moves there, and against what that is small or not."""
 
@@ -33,11 +34,9 @@ class ContactState:
     @staticmethod
     def of(system: RollingSystem, state: State, point: Vector | None = None) -> ContactState:
         """Return the contact of a state that touches the support, or is over it; it is searched for unless given."""
-        q = Quaternion(*state.orientation)
         if point is None:
-            return ContactState.at(
-                state, closest_contact(system, state.time, Vector(*state.position), q, state.support)
-            )
+            return ContactState.at(state, contact_of(system, state))
+        q = Quaternion(*state.orientation)
         return ContactState.at(state, contact_at(system, state.time, point, q, state.support))
 
     @staticmethod
@@ -73,15 +72,17 @@ class ContactState:
     ) -> ContactState:
         """Return the body at the same place with other velocities, also of the support's own motion."""
         coordinates = self.state.support if support is None else support
-        state = replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=coordinates)
+        was = self.state
+        state = State(was.position, floats(V), floats(Omega), was.orientation, was.time, coordinates)
         if coordinates == self.state.support:  # which is all of the motion that the geometry of touch depends on
             return ContactState.at(state, self.contact)
         return ContactState.of(system, state, self.contact.point)
 
     def over(self, gap: float) -> ContactState:
         """Return the body moved along the normal until it is so far over the support, m."""
-        centre = self.contact.centre + self.contact.normal * gap
-        return replace(self, state=replace(self.state, position=floats(centre)), gap=gap)
+        centre, was = self.contact.centre + self.contact.normal * gap, self.state
+        moved = State(floats(centre), was.velocity, was.angular_velocity, was.orientation, was.time, was.support)
+        return replace(self, state=moved, gap=gap)
 
     def scale(self, system: RollingSystem) -> float:
         """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
+from operator import mul
 from typing import Any
 
 import numpy as np
@@ -140,10 +141,13 @@ class _Course:
         which = np.minimum(np.searchsorted(self.middle + self.half, times), self.middle.size - 1)
         half = self.half[which]
         x = np.clip(np.divide(times - self.middle[which], half, out=np.zeros_like(times), where=half > 0), -1.0, 1.0)
-        now = self.series[:, -1].take(which, axis=1)
-        for n in range(self.series.shape[1] - 2, -1, -1):
-            now = now * x + self.series[:, n].take(which, axis=1)
-        return _product(_product(now, self._back[:, which]), self._before[:, which])
+        # A step's numbers for one power of x stand side by side: they are fetched together.
+        rows = np.ascontiguousarray(self.series.transpose(1, 2, 0)).view(float)
+        x4, now = np.repeat(x, 4).reshape(-1, 4), rows[-1].take(which, axis=0)
+        for row in rows[-2::-1]:
+            now *= x4
+            now += row.take(which, axis=0)
+        return _product(_product(now.view(complex).T, self._back[:, which]), self._before[:, which])
 
 
 def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array, Array, Array]:
@@ -269,17 +273,21 @@ def _count_above(bound: float, sizes: Array) -> int:
 def _taylor(coefficients: Array) -> Pairs:
     """Return the series (2, terms, total) of q for Ω's coefficients (3, powers, total)."""
     most, (_, powers, total) = _terms_needed(coefficients), coefficients.shape
-    turning = np.zeros((4, powers, 4, total))  # Ω q = (turning) q for each power of x, so that one sum makes a term
+    turning: Any = np.zeros(
+        (4, powers, 4, total)
+    )  # Ω q = (turning) q for each power of x, so that one sum makes a term
     for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         turning[1 + a, :, 0] = turning[1 + c, :, 1 + b] = coefficients[a]
         turning[0, :, 1 + a] = turning[1 + b, :, 1 + c] = -coefficients[a]
-    q = np.zeros((most + 1, 4, total))
-    q[0, 0] = 1.0
+    turning = turning.reshape(4, -1, total)
+    q = np.zeros((4 * (most + 1), total))  # the last term first, so that those to be summed stand side by side
+    q[-4] = 1.0
     for n in range(1, most + 1):
-        used = min(n, powers)
-        np.einsum("ajbt,jbt->at", turning[:, :used], q[n - used : n][::-1], out=q[n])
-        q[n] *= 0.5 / n
-    return np.stack([q[:, 0] + 1j * q[:, 1], q[:, 2] + 1j * q[:, 3]])
+        first, used = 4 * (most + 1 - n), 4 * min(n, powers)
+        np.einsum("act,ct->at", turning[:, :used], q[first : first + used], out=q[first - 4 : first])
+        q[first - 4 : first] *= 0.5 / n
+    w, x, y, z = q.reshape(-1, 4, total)[::-1].swapaxes(0, 1)
+    return np.stack([w + 1j * x, y + 1j * z])
 
 
 def _terms_needed(coefficients: Array) -> int:
@@ -288,10 +296,10 @@ def _terms_needed(coefficients: Array) -> int:
     Where Ω is small but turns fast, a late coefficient outweighs all products of early ones.
     """
     sizes = np.abs(coefficients).sum(axis=0).max(axis=1, initial=0.0).tolist()
-    most = [1.0]
+    most = [1.0]  # the last first
     for n in range(1, _MOST_TERMS + 1):
-        most.append(sum(sizes[j] * most[n - 1 - j] for j in range(min(n, len(sizes)))) * 0.5 / n)
-    return max(1, *(n for n, bound in enumerate(most) if bound > _EPSILON / 8))
+        most.insert(0, sum(map(mul, sizes, most)) * 0.5 / n)
+    return max(1, *(_MOST_TERMS - n for n, bound in enumerate(most) if bound > _EPSILON / 8))
 
 
 def _product(p: Pairs, q: Pairs) -> Pairs:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Iterator, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
@@ -18,6 +18,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.kinks import Kink, kinks_and_jolts
+from ..mechanics.records import frozen_record
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import corners, transitions
@@ -52,7 +53,7 @@ class SegmentCompleter(Protocol):
         """Return the samples of stretches of which each goes on with the next, this one's first."""
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class Segment:
     """One law's part of a run, or a piece of it: states at the times before its stop, if it came to one."""
 

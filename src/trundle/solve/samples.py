@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..display import Displayed, Headline, Markup, number, numbers, pairs
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import normal_at
+from ..mechanics.contact import normal_at, normal_on
 from ..mechanics.loads import BodyMotion
 from ..mechanics.motions import SupportState
 from ..mechanics.system import RollingSystem, State
@@ -130,7 +130,7 @@ class Samples:
 
     def motion(self, system: RollingSystem) -> BodyMotion:
         """Return the motion that loads and integrals take, with arrays as components."""
-        touching = not (self.phase == FLIGHT).all()
+        touching, support = not (self.phase == FLIGHT).all(), self.support(system)
         return BodyMotion(
             self.time,
             system.body.mass,
@@ -138,8 +138,8 @@ class Samples:
             Vector.of(self.velocity),
             Quaternion.of(self.orientation),
             Vector.of(self.angular_velocity),
-            Vector.of(self.normals(system)) if touching else None,
-            self.support(system).angular_velocity,
+            normal_on(system, support, Vector.of(self.contact)) if touching else None,
+            support.angular_velocity,
         )
 
     def support(self, system: RollingSystem) -> SupportState:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from ..errors import SolverError
@@ -13,6 +13,7 @@ from ..mechanics.duals import value_of
 from ..mechanics.impact import land
 from ..mechanics.kinks import Kink
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
+from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
@@ -45,7 +46,7 @@ SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 JOLT = "jolt"  # the stop where the velocity of the support jumps under a body that touches it
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class ZeroCrossing:
     """Where a stretch ended, a stop: the instant, which of the law's event functions was zero, and the state vector."""
 
@@ -59,7 +60,7 @@ class ZeroCrossing:
         return law.unpack(system, self.time, self.state_vector) if self.known is None else self.known
 
 
-@dataclass(frozen=True)
+@frozen_record()
 class PhaseStart:
     """The law that holds from now on, where the body is, its numbers by that law, and what happened."""
 
@@ -84,7 +85,14 @@ class PhaseStart:
 
 
 def at_start(system: RollingSystem, start: State) -> PhaseStart:
-    """Return the phase in which a start finds itself."""
+    """Return the phase in which a start finds itself; a system keeps that of the last start that was asked about."""
+    known: tuple[State, PhaseStart] | None = system._known.get(at_start)
+    if known is None or known[0] is not start:
+        system._known[at_start] = known = start, _at_start(system, start)
+    return known[1]
+
+
+def _at_start(system: RollingSystem, start: State) -> PhaseStart:
     at = ContactState.of(system, start)
     if at.gap > no_gap(at.contact, start.position):
         return _fly(at)

@@ -8,13 +8,14 @@ from typing import Any
 
 from ..algebra import Vector
 from ..loads import BodyMotion
+from ..records import frozen_record
 from ..scalars import Scalar
 from ..system import RollingSystem
 
 ROLLING, SLIPPING, FLIGHT = PHASES = ("rolling", "slipping", "flight")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Record:
     """A body's motion and contact at one instant, or at many with arrays as components."""
 

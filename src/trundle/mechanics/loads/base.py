@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from ..algebra import ZERO, Quaternion, Vector
 from ..motions import Motion, SupportState
 from ..parts import Part
+from ..records import frozen_record
 from ..scalars import Scalar, is_zero
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class BodyMotion:
     """What a load may depend on: the motion of the body at one instant, in the inertial support frame.
 
@@ -33,7 +33,7 @@ class BodyMotion:
     support_angular_velocity: Vector = ZERO  # ω, rad/s
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Acting:
     """What acts on a body at one instant besides the contact force, in the inertial support frame."""
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ..algebra import Matrix, Vector
 from ..parts import Part
+from ..records import frozen_record
 from ..scalars import Scalar
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class SupportState:
     """Pose, twist and acceleration of the support at one instant, in the inertial support frame.
 
@@ -75,7 +74,7 @@ class SupportState:
         Vector
             In the support's own frame.
         """
-        return self.rotation.transpose @ (p - self.origin)
+        return (p - self.origin) @ self.rotation
 
     def material_velocity(self, p: Vector) -> Vector:
         """Return u(p) = Ẋ + ω×(p − X), the velocity of the support's material at p, m/s.

@@ -133,7 +133,7 @@ class Shape(Part):
         C : Matrix or Turned
             Inverse curvature at the contact, support frame, m.
         """
-        nu = -(Q.transpose @ n)
+        nu = -(n @ Q)
         return Q @ self.support_map(nu), RotatedTensor(Q, self.support_gradient(nu))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
@@ -20,7 +21,7 @@ class Table(BaseModel):
     @classmethod
     def _diameters(cls) -> dict[str, str]:
         """Return the key of each radius that may be given as a diameter, with that key."""
-        return {key: whole for key in cls.model_fields if (whole := diameter_of(cls, key)) is not None}
+        return _diameters_of(cls)
 
     @model_validator(mode="before")
     @classmethod
@@ -42,6 +43,11 @@ class Table(BaseModel):
                 schema["required"].remove(key)
                 schema.setdefault("allOf", []).append({"oneOf": [{"required": [key]}, {"required": [whole]}]})
         return schema
+
+
+@cache
+def _diameters_of(table: type[Table]) -> dict[str, str]:
+    return {key: whole for key in table.model_fields if (whole := diameter_of(table, key)) is not None}
 
 
 def _check_restitution(share: float, received: Any) -> None:

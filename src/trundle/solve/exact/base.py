@@ -130,13 +130,22 @@ class ClosedForm:
             Empty inside. Forces are looked at where all parts fit, the start where the forces fit, too. Of duals the
             values are asked.
         """
-        if has_duals((system, start)):
-            system, start = values_of((system, start))
-        for about in (PARTS, FORCES, START)[: 2 if start is None else 3]:
-            asked = [condition for condition in cls.conditions if condition.about == about]
-            if found := [failure for condition in asked for failure in condition.failures(system, start)]:
-                return found
-        return []
+        if cls not in system._known:  # the same system is asked about at each of its events
+            system._known[cls] = cls._outside(values_of(system) if has_duals(system) else system)
+        found: list[str] = list(system._known[cls])
+        if found or start is None or not any(condition.about == START for condition in cls.conditions):
+            return found
+        given = (system, start)
+        return cls._failures(START, *(values_of(given) if has_duals(given) else given))
+
+    @classmethod
+    def _outside(cls, system: RollingSystem) -> list[str]:
+        return cls._failures(PARTS, system, None) or cls._failures(FORCES, system, None)
+
+    @classmethod
+    def _failures(cls, about: int, system: RollingSystem, start: State | None) -> list[str]:
+        asked = (condition for condition in cls.conditions if condition.about == about)
+        return [failure for condition in asked for failure in condition.failures(system, start)]
 
     @classmethod
     def refusal(cls, system: RollingSystem, start: State | None = None) -> str:
@@ -189,6 +198,21 @@ class ClosedForm:
             Centre of mass, m; its velocity, m/s; angular velocity, rad/s; contact force, N.
         """
         raise NotImplementedError
+
+    def angular_velocity_at(self, t: Any) -> Vector:
+        """Return Ω of `motion_at` alone: override it where that is much less work.
+
+        Parameters
+        ----------
+        t : float or array
+            Since the start, s.
+
+        Returns
+        -------
+        Vector
+            rad/s.
+        """
+        return self.motion_at(t)[2]
 
     def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         """Return by how much the coordinates of the support's own motion have grown.

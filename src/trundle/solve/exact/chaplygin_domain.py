@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Matrix, Quaternion, Vector
+from ...mechanics.records import remembered
 from ...mechanics.scalars import namespace
 from ...mechanics.shapes import concentric_sphere
 from ...mechanics.surfaces import Plane
@@ -43,6 +44,7 @@ ON_LEVEL_PLANE = (on(Plane), AT_REST, CONSTANT_LOADS, ALONG_NORMAL, PRESSED)
 TURNS = Condition("", _still, START)
 
 
+@remembered
 def principal_axes(body: Any) -> tuple[tuple[float, float, float], Axes]:
     """Return a body's principal moments of inertia and their axes.
 

@@ -10,7 +10,6 @@ from math import factorial
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval
 
 _MOST_STEPS = 400
 _TABLE = 64  # parts, between which two or three of Newton's steps find x
@@ -110,7 +109,10 @@ def stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
         rest = (x - s1) / square
     small = np.abs(z) < 1
     if np.any(small):  # where the difference would lose digits
-        rest = np.where(small, x * x * x * polyval(np.where(small, z, 0.0), _SERIES), rest)
+        z, series = np.where(small, z, 0.0), _SERIES[-1]
+        for term in _SERIES[-2::-1]:
+            series = term + z * series
+        rest = np.where(small, x * x * x * series, rest)
     return 1 - square * versine, s1, versine, rest
 
 

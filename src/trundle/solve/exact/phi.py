@@ -5,10 +5,10 @@ Everything is written on (real, imaginary) pairs so that any scalar of `mechanic
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import factorial, pi
 from typing import Any
 
+from ...mechanics.records import frozen_record
 from ...mechanics.scalars import Scalar, is_number, is_zero, less, namespace
 
 # φ₂ = Σ zⁿ/(n + 2)!: below |z| = 1 these terms leave less than 1e-17.
@@ -29,7 +29,7 @@ def _minus(a: Scalar, b: Scalar) -> Scalar:
     return a if is_zero(b) else -b if is_zero(a) else a - b
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Complex:
     """A point ζ = x + i y of the support's plane.
 
@@ -131,12 +131,15 @@ def _half_angle(xp: Any, y: Scalar) -> tuple[Scalar, Scalar]:
 
 def _series(z: Complex) -> Complex:
     """Sum φ₂ by its even and odd powers, so that a purely real or imaginary z needs only real products."""
-    square = z * z
-    even, odd = Complex(_TERMS[16], 0.0), Complex(_TERMS[17], 0.0)
+    square: Any = z * z
+    terms: list[Any] = [Complex(term, 0.0) for term in _TERMS]
+    real = is_zero(square.im)
+    if real:
+        square, terms = square.re, _TERMS
+    even, odd = terms[16], terms[17]
     for n in range(14, -2, -2):
-        even = even * square + Complex(_TERMS[n], 0.0)
-        odd = odd * square + Complex(_TERMS[n + 1], 0.0)
-    return even + z * odd
+        even, odd = even * square + terms[n], odd * square + terms[n + 1]
+    return Complex(even, 0.0) + z * Complex(odd, 0.0) if real else even + z * odd
 
 
 def _by_definition(xp: Any, x: Scalar, y: Scalar) -> tuple[Complex, Complex, Complex]:

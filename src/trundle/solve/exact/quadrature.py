@@ -77,7 +77,10 @@ def series_at(series: NDArray[Any], piece: Any, x: Any) -> Any:
     twice = 2 * x
     ahead = behind = 0.0 * series[0].take(piece, axis=1) * x  # order by order: a million times are not 25 million
     for order in range(len(series) - 1, 0, -1):
-        ahead, behind = series[order].take(piece, axis=1) + twice * ahead - behind, ahead
+        now = twice * ahead
+        now -= behind
+        now += series[order].take(piece, axis=1)
+        ahead, behind = now, ahead
     return series[0].take(piece, axis=1) + x * ahead - behind
 
 

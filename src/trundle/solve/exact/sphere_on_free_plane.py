@@ -245,7 +245,12 @@ class _Orbit:
         """Return t and w = dt/dτ."""
         _, s1, c2, s3 = stumpff(self.square, tau)
         X, X_rate = self.along
-        return self.w * tau + self.pull * (X * c2 + X_rate * s3), self.w + self.pull * (X * s1 + X_rate * c2)
+        return self.w * tau + self.pull * (X * c2 + X_rate * s3), self._rate(s1, c2)
+
+    def _rate(self, s1: Any, c2: Any) -> Any:
+        """Return w."""
+        X, X_rate = self.along
+        return self.w + self.pull * (X * s1 + X_rate * c2)
 
     def at(self, t: Any) -> tuple[Any, Any, Any, Any, Any]:
         """Return ζ, ζ̇, ζ̈, ω and the table's angle."""
@@ -258,7 +263,7 @@ class _Orbit:
             rounds = np.floor(t / self.period)
             tau = self.found(t - rounds * self.period if math.isfinite(self.period) else t)
         cosine, s1, c2, _ = stumpff(self.square, tau)
-        _, w = self._time(tau)
+        w = self._rate(s1, c2)
         X = self.along[0] * cosine + self.along[1] * s1
         first = self.first
         second = 1j * self.c * first + self.M * (self.pull * self.along[0])

@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -138,7 +139,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         """κ = ω k/(1 + k), the rate of the circle, rad/s."""
         return self._kappa_pair[0]
 
-    @property
+    @cached_property
     def _kappa_pair(self) -> tuple[Scalar, Scalar]:
         return quotient_times(self.rate, self.inertia_ratio)
 
@@ -147,7 +148,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         """γ = c/(m(1 + k)), the rate at which drag slows the ball, 1/s."""
         return 0.0 if is_zero(self.drag) else self.drag / (self.mass * (1 + self.inertia_ratio))
 
-    @property
+    @cached_property
     def phi(self) -> Complex:
         """φ = [F_x + iF_y + (K_y − iK_x)/a]/(m(1 + k)), the acceleration that the loads give, m/s²."""
         (fx, fy, _), (kx, ky, _) = self.force, self.torque
@@ -271,31 +272,46 @@ class SphereOnPlane(ManySamples, ClosedForm):
         >>> still.motion_at(2.0)[3]
         Vector(x=0.0, y=0.0, z=0.64)
         """
-        m, a, k, omega = self.mass, self.radius, self.inertia_ratio, self.rate
-        exponential, t_phi1, tt_phi2 = self._terms(t)
+        m, a = self.mass, self.radius
+        terms = exponential, t_phi1, tt_phi2 = self._terms(t)
         V0, phi = Complex(*self.velocity), self.phi
         zeta0 = Complex(*self.position)
-        push = tt_phi2 * phi
-        zeta = zeta0 + (t_phi1 * V0 + push)  # as `position_at` has it
+        zeta = zeta0 + (t_phi1 * V0 + tt_phi2 * phi)  # as `position_at` has it
         V = exponential * V0 + t_phi1 * phi
-        # Ω from no slip, a Ω = iζ̇ + ωζ, written so that it keeps its digits where Ω starts at 0 and where it dies out:
-        # a Ω = e^{λt} a Ω₀ + t φ₁ [ω(ζ̇₀ − λζ₀) + iφ] + ω t² φ₂ φ.
-        lam = Complex(0.0 if is_zero(self.drag) else -self.gamma, self.kappa)
-        gain = (V0 - lam * zeta0).scaled(omega) + phi.times_i
-        Omega0 = V0.times_i + zeta0.scaled(omega)
-        Omega = (exponential * Omega0 + t_phi1 * gain + push.scaled(omega)).scaled(1 / a)
         # R from Newton's law with ζ̈ = e^{λt}(λζ̇₀ + φ).
-        A0 = lam * V0 + phi
+        A0 = self._lam * V0 + phi
         fx, fy, fz = self.force
         R = (exponential * A0).scaled(m) - Complex(fx, fy) + V.scaled(self.drag)
-        torque_n = self.torque[2]
-        spin = self.spin if is_zero(torque_n) else self.spin + torque_n * t / (k * m * a * a)
         return (
             Vector(zeta.re, zeta.im, a),
             Vector(V.re, V.im, 0.0),
-            Vector(Omega.re, Omega.im, spin),
+            self._turning(t, terms),
             Vector(R.re, R.im, 0.0 if is_zero(fz) else -fz),
         )
+
+    def angular_velocity_at(self, t: Any) -> Vector:
+        """Return Ω alone."""
+        return self._turning(t, self._terms(t))
+
+    @property
+    def _lam(self) -> Complex:
+        return Complex(0.0 if is_zero(self.drag) else -self.gamma, self.kappa)
+
+    def _turning(self, t: Any, terms: tuple[Complex, Complex, Complex]) -> Vector:
+        """Return Ω from no slip, a Ω = iζ̇ + ωζ.
+
+        It is written so that it keeps its digits where Ω starts at 0 and where it dies out:
+        a Ω = e^{λt} a Ω₀ + t φ₁ [ω(ζ̇₀ − λζ₀) + iφ] + ω t² φ₂ φ.
+        """
+        exponential, t_phi1, tt_phi2 = terms
+        m, a, k, omega = self.mass, self.radius, self.inertia_ratio, self.rate
+        V0, zeta0, phi = Complex(*self.velocity), Complex(*self.position), self.phi
+        gain = (V0 - self._lam * zeta0).scaled(omega) + phi.times_i
+        Omega0 = V0.times_i + zeta0.scaled(omega)
+        Omega = (exponential * Omega0 + t_phi1 * gain + (tt_phi2 * phi).scaled(omega)).scaled(1 / a)
+        torque_n = self.torque[2]
+        spin = self.spin if is_zero(torque_n) else self.spin + torque_n * t / (k * m * a * a)
+        return Vector(Omega.re, Omega.im, spin)
 
     def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the axis and the angle x/a by which the ball has turned, where it rolls straight on a fixed plane."""

@@ -17,7 +17,7 @@ _SHARE, _SHORTEST = 4e-15, 1e-13  # left by the last coefficients; of a piece wh
 _NOTHING = 1e-300  # in SI: smaller floats have fewer digits
 # Ten seconds and one; then Taylor's method is quicker.
 _PATIENCE: dict[str, Any] = {"steps": 2e4, "spare": 3e3, "name": "The quadrature of T9", "error": OutOfDomainError}
-_AHEAD = 8
+_AT_ONCE = 8  # pieces
 _MOST_KNOWN, _MOST_KINKS = 1000, 200
 
 
@@ -32,7 +32,6 @@ class Course:
         self.zeta, self.velocity = [complex(*form.position)], [complex(*form.velocity)]
         self.rate = [float(form.rates(0.0)[0])]
         self.turned, self.swept, self.kinks = [0.0], [0.0], 0
-        self.ahead: dict[tuple[float, float], Any] = {}  # what is given on pieces to come, by begin and length
         self.series: list[Any] = []  # of ∫ω and ∫K_z, of ∫e^−Λ N and ∫φ
         self.stacked: Any = None
 
@@ -77,77 +76,90 @@ class Course:
         start = self.form.start_time
         patience = Patience(start + self.edges[-1], start + end, **_PATIENCE)
         while self.edges[-1] <= end:
-            begin = self.edges[-1]
             self.length = min(_LONGEST, 2 * self.length)
-            while not self._piece(begin, end):
+            while not (added := self._add(end)):
                 self.length /= 2
-            patience.after(1, start + self.edges[-1])
+            patience.after(added, start + self.edges[-1])
 
-    def _given(self, begin: float, end: float) -> Any:
-        """Return the points of a piece, and there ω, φ and K_z; ω is at its end, too.
+    def _given(self, begins: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """Return the points of pieces, and there ω, φ and K_z; and ω at their ends."""
+        share = np.append(0.5 * (1 + rule().points), 1.0)
+        times = begins[:, None] + self.length * share
+        with np.errstate(all="ignore"):  # what is not finite is refused by name
+            found = (self.form.rates(times.ravel())[0], *self.form.pushes(times.ravel())[2:])
+        omega, push, couple = (np.broadcast_to(part, times.size).reshape(times.shape) for part in found)
+        return times[:, :-1], omega[:, :-1], push[:, :-1], couple[:, :-1], omega[:, -1]
 
-        They are asked for on several pieces at once, since each call costs as much as all else about a piece.
+    def _add(self, end: float) -> int:
+        """Add some pieces, together since each step costs as much for one; return how many, 0 where they are too long.
+
+        None is added behind one that is too long for its polynomials, or where something is not finite.
         """
-        if (begin, self.length) not in self.ahead:
-            begins = [begin]
-            while len(begins) < _AHEAD and begins[-1] + self.length <= end:
-                begins.append(begins[-1] + self.length)
-            share = np.append(0.5 * (1 + rule().points), 1.0)
-            times = np.array(begins)[:, None] + self.length * share
-            with np.errstate(all="ignore"):  # what is not finite is refused by name
-                found = (self.form.rates(times.ravel())[0], *self.form.pushes(times.ravel())[2:])
-            rows = [times, *(np.broadcast_to(part, times.size).reshape(times.shape) for part in found)]
-            self.ahead = {(at, self.length): [row[i] for row in rows] for i, at in enumerate(begins)}
-        times, omega, push, couple = self.ahead[begin, self.length]
-        return times[:-1], omega, push[:-1], couple[:-1]
-
-    def _piece(self, begin: float, end: float) -> bool:
-        """Add a piece; False where it is too long for its polynomials."""
-        form, this = self.form, rule()
-        half = 0.5 * self.length
-        times, all_omega, push, couple = self._given(begin, end)
-        omega, rate = all_omega[:-1], float(all_omega[-1])
-        if begin + self.length > end and not (math.isfinite(rate) and _finite(times, end, omega, push, couple)):
-            return False  # a pole just behind the run is none in it
-        _check_finite(form.start_time + times, omega, push, couple)
-        swept = half * (form.gamma + form.share * np.abs(omega).max())
-        kinked = self.length <= _SHORTEST * max(1.0, begin)
-        if swept > _MOST_PHASE:
+        form, this, half = self.form, rule(), 0.5 * self.length
+        begins = [self.edges[-1]]
+        while len(begins) < _AT_ONCE and begins[-1] + self.length <= end:
+            begins.append(begins[-1] + self.length)
+        given = self._given(np.array(begins))
+        finite = np.logical_and.reduce([np.isfinite(part).reshape(len(begins), -1).all(axis=1) for part in given])
+        if not finite[0]:
+            times, *values, rate = (part[0] for part in given)
+            if begins[0] + self.length > end and not (math.isfinite(rate) and _finite(times, end, *values)):
+                return 0  # a pole just behind the run is none in it
+            _check_finite(form.start_time + times, *values)
+        largest = np.abs(given[1]).max(axis=1)
+        slow = half * (form.gamma + form.share * largest) <= _MOST_PHASE
+        kinked = self.length <= _SHORTEST * max(1.0, begins[0])
+        if not slow[0]:
             if kinked:
-                raise SolverError(f"The plane's rate grows beyond any bound at t = {form.start_time + begin:.6g} s.")
-            return False
-        decay = np.exp(form.gamma * half * (1 + this.points) - 1j * form.share * half * (this.running @ omega))
-        carried = 1j * form.share * (omega - self.rate[-1]) * self.zeta[-1]
-        weighted = decay * (self.velocity[-1] + carried + half * (this.running @ push))
-        values = np.stack([omega, couple, weighted, push])
-        tail = np.abs(values @ this.coefficients[-2:].T).max(axis=1)
-        size = np.abs(values).max(axis=1)
-        size[0] = max(size[0], 1 / (form.share * half + 1e-300))
-        size[3] += size[2] / half
-        slope = np.abs(np.diff(values, axis=1) / np.diff(times)).max(axis=1)
-        noise = 2e-15 * (abs(form.start_time) + begin + self.length) * slope  # from the rounding of the time itself
-        noise[2] += 1e-15 * form.share * np.abs(omega).max() * abs(self.zeta[-1])  # from what is carried, a difference
-        if (tail > _SHARE * size + noise + _NOTHING).any():
+                raise SolverError(
+                    f"The plane's rate grows beyond any bound at t = {form.start_time + begins[0]:.6g} s."
+                )
+            return 0
+        count = _leading(finite & slow) or 1
+        times, omega, push, couple, rates = (part[:count] for part in given)
+        before = np.append(self.rate[-1], rates[:-1])
+        decay = np.exp(form.gamma * half * (1 + this.points) - 1j * form.share * half * (omega @ this.running.T))
+        carried, pushed = 1j * form.share * (omega - before[:, None]), half * (push @ this.running.T)
+        angle, turned, driven = (half * (part @ this.total) for part in (omega, couple, push))
+        weighted, zeta, velocity = [], self.zeta[-1:], self.velocity[-1:]
+        for j in range(count):
+            weighted.append(decay[j] * (velocity[j] + carried[j] * zeta[j] + pushed[j]))
+            gone = np.exp(1j * form.share * angle[j] - 2 * form.gamma * half) * (half * (this.total @ weighted[j]))
+            gained = 1j * form.share * (rates[j] - before[j]) * zeta[j] + driven[j]
+            velocity.append(complex((1j * form.share * rates[j] - form.gamma) * gone + velocity[j] + gained))
+            zeta.append(complex(zeta[j] + gone))
+        four = np.stack([omega, couple, np.array(weighted), push], axis=1)
+        tail, size = np.abs(four @ this.coefficients[-2:].T).max(axis=2), np.abs(four).max(axis=2)
+        size[:, 0] = np.maximum(size[:, 0], 1 / (form.share * half + 1e-300))
+        size[:, 3] += size[:, 2] / half
+        slope = np.abs(np.diff(four) / np.diff(times)[:, None]).max(axis=2)
+        noise = 2e-15 * (abs(form.start_time) + times[:, :1] + self.length) * slope  # from rounding of the time itself
+        noise[:, 2] += 1e-15 * form.share * largest[:count] * np.abs(zeta[:-1])  # from what is carried, a difference
+        smooth = ~(tail > _SHARE * size + noise + _NOTHING).any(axis=1)
+        if not smooth[0]:
             if not kinked:
-                return False
+                return 0
             self.kinks += 1
             if self.kinks > _MOST_KINKS:
                 raise SolverError(
                     "The plane's rate, or a load, is not smooth enough for quadrature near "
-                    f't = {form.start_time + begin:.6g} s. Use method="taylor" or method="runge-kutta".'
+                    f't = {form.start_time + begins[0]:.6g} s. Use method="taylor" or method="runge-kutta".'
                 )
-        series = half * (this.antiderivative @ values.T)
-        angle, turned, added, push = series.sum(axis=0)
-        gone = np.exp(1j * form.share * angle.real - 2 * form.gamma * half) * added
-        driven = self.velocity[-1] + 1j * form.share * (rate - self.rate[-1]) * self.zeta[-1] + push
-        self.series.append((series[:, :2].real, series[:, 2:]))
-        self.zeta.append(complex(self.zeta[-1] + gone))
-        self.velocity.append(complex((1j * form.share * rate - form.gamma) * gone + driven))
-        self.rate.append(rate)
-        self.swept.append(self.swept[-1] + float(angle.real))
-        self.turned.append(self.turned[-1] + float(turned.real))
-        self.edges.append(begin + self.length)
-        return True
+        count = _leading(smooth) or 1
+        series = half * (this.antiderivative @ four[:count].swapaxes(1, 2))
+        self.series += [(each[:, :2].real, each[:, 2:]) for each in series]
+        self.zeta += zeta[1 : count + 1]
+        self.velocity += velocity[1 : count + 1]
+        self.rate += rates[:count].tolist()
+        self.swept += (self.swept[-1] + np.cumsum(angle[:count])).tolist()
+        self.turned += (self.turned[-1] + np.cumsum(turned[:count])).tolist()
+        self.edges += [*begins[1:count], begins[count - 1] + self.length]
+        return count
+
+
+def _leading(good: Any) -> int:
+    """Count those at the beginning that are good."""
+    return int(good.size if good.all() else good.argmin())
 
 
 class PreciseCourse:

@@ -257,7 +257,7 @@ class Law:
         ending = surface.domain_margin(there)
         if ending is not None:
             found["end"] = ending - _SHORT_OF_IT * contact.offset.norm()
-        covered = system.body.shape.validity_margin(-(orientation.matrix().transpose @ contact.normal))
+        covered = system.body.shape.validity_margin(-(contact.normal @ orientation.matrix()))
         if covered is not None:
             found["edge"] = covered
         if not contact.flat:

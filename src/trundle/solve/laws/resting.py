@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.contact import Contact, contact_at
 from ...mechanics.loads import BodyMotion
+from ...mechanics.records import frozen_record
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem
 from ..contact_state import ContactState
@@ -78,7 +77,7 @@ class RestingLaw(Law):
         )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen_record()
 class Held:
     """A body at rest on its support: where, and what that takes."""
 

@@ -94,8 +94,11 @@ def _about_third_axis(angle: Array) -> Array:
 def _quaternions(matrices: Array) -> Array:
     from scipy.spatial.transform import Rotation
 
-    xyzw = Rotation.from_matrix(matrices).as_quat()
-    return np.roll(xyzw, 1, axis=1)
+    try:
+        found = Rotation.from_matrix(matrices, assume_valid=True)
+    except TypeError:  # before SciPy 1.17, which takes twenty times as long to make sure
+        found = Rotation.from_matrix(matrices)
+    return np.roll(found.as_quat(), 1, axis=1)
 
 
 def continuous(quaternions: Array) -> Array:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Quaternion, Vector
+from ...mechanics.contact import normal_on
 from ...mechanics.invariants import Record, invariants_of
 from ...mechanics.invariants.legendre import LEGENDRE_PAIR
 from ...mechanics.invariants.revolution import ROUTH_PAIR
@@ -84,6 +85,7 @@ def _integrals(system: RollingSystem, start: State, samples: Samples) -> Iterato
 
 def _record(system: RollingSystem, start: State, samples: Samples) -> Any:
     """Return the start as integrals take it."""
+    support, contact = system.support.motion.at(start.time, *start.support), Vector.of(samples.contact[0])
     motion = BodyMotion(
         start.time,
         system.body.mass,
@@ -91,7 +93,7 @@ def _record(system: RollingSystem, start: State, samples: Samples) -> Any:
         Vector(*start.velocity),
         Quaternion(*start.orientation),
         Vector(*start.angular_velocity),
-        Vector.of(samples.part(slice(0, 1)).normals(system)[0]),
-        system.support.motion.at(start.time, *start.support).angular_velocity,
+        normal_on(system, support, contact),
+        support.angular_velocity,
     )
-    return Record(motion, Vector.of(samples.contact[0]), start.support)
+    return Record(motion, contact, start.support)

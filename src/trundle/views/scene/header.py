@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from copy import deepcopy
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 def header_of(run: Trajectory, ground: Ground, radius: float) -> dict[str, Any]:
     """Return the part of a header that the system and the scenario give."""
     system, scenario = run.system, tables(run.scenario)
-    tilt, times = float(system.support.tilt), run.data["time"].values
+    tilt, times = float(system.support.tilt), run.samples.time
     return header_with(
         run.title or title_of(system),
         float(times[-1] - times[0]),
@@ -125,7 +124,14 @@ def _parsed(text: str) -> dict[str, Any]:
 
 def tables(text: str) -> dict[str, Any] | None:
     """Return the tables of a scenario, or None where there is no scenario."""
-    return deepcopy(_parsed(text)) if text else None  # so that nobody changes what is kept
+    return _copied(_parsed(text)) if text else None  # so that nobody changes what is kept
+
+
+def _copied(part: Any) -> Any:
+    """Copy tables and lists, which is all that can be changed in them."""
+    if isinstance(part, dict):
+        return {key: _copied(value) for key, value in part.items()}
+    return [_copied(value) for value in part] if isinstance(part, list) else part
 
 
 def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[str, Any]:

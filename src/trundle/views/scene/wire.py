@@ -14,6 +14,7 @@ import math
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ def pack(scene: Scene) -> bytes:
     """
     described, parts, offset = {}, [], 0
     for name, column in scene.columns.items():
-        kind = column.dtype.name
+        kind = _name(column.dtype)
         if kind not in _TYPES:
             raise TypeError(f"the column {name!r} must be one of {', '.join(_TYPES)}; got {kind}")
         described[name] = {
@@ -94,11 +95,18 @@ def unpack(blob: bytes) -> Scene:
     return Scene(header, columns, {name: facts["unit"] for name, facts in described.items() if facts["unit"]})
 
 
+@cache  # NumPy puts it together each time
+def _name(kind: np.dtype[Any]) -> str:
+    return kind.name
+
+
 def _differences(column: NDArray[Any]) -> bytes:
     rows = np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<")).reshape(len(column), -1)
     words = rows.view(f"<u{rows.itemsize}")
-    twice = np.diff(words, n=2, axis=0, prepend=np.zeros_like(words, shape=(2, words.shape[1])))
-    return np.ascontiguousarray(twice).view(np.uint8).T.tobytes()
+    for _ in range(2):
+        words, before = words.copy(), words
+        words[1:] -= before[:-1]
+    return words.view(np.uint8).T.tobytes()
 
 
 def _column(blob: bytes, begin: int, facts: Mapping[str, Any]) -> NDArray[Any]:
@@ -123,6 +131,11 @@ def plain(value: Any) -> Any:
     >>> plain({"rate": np.float64(1.5), "ratio": float("inf"), "pair": (1, True)})
     {'rate': 1.5, 'ratio': None, 'pair': [1, True]}
     """
+    kind = type(value)
+    if kind is float:  # nearly all are of Python's own kinds
+        return value if math.isfinite(value) else None
+    if kind is str or kind is int or kind is bool or value is None:
+        return value
     if isinstance(value, Mapping):
         return {str(key): plain(part) for key, part in value.items()}
     if isinstance(value, list | tuple):
