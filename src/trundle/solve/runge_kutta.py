@@ -43,6 +43,7 @@ _RATES = 15  # evaluations of the law in a step of SciPy's
 OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
 _OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
 _BEGINNING = 20  # steps, after which one sees how many there will be
+_GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
 WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
 
@@ -172,7 +173,7 @@ def _integrated(
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
-    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF} if law.brief else {}))
+    patience = Patience(begin, begin + end, **_PATIENCE | {"steps": _most_steps(law)})
     try:
         at = law.unpack(system, begin, y0)
         least = tolerance * _scale(y0, at.arm, at.scale(system))
@@ -224,7 +225,9 @@ def _paths(
             given["first_step"] = law.lasts
         stepper = DOP853(rates, t, y, end, **given)
         compiles = traced.compiled is not None and available()
-        yield from _one_by_one(stepper, _many_to_come(stepper) if compiles else lambda: False)
+        horizon = _Horizon(traced, begin, stepper)
+        most = _most_steps(law)
+        yield from _one_by_one(stepper, _many_to_come(stepper, horizon, most) if compiles else lambda: False)
         if stepper.status == "running" and traced.compiled is not None:
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)
 
@@ -240,8 +243,11 @@ def _one_by_one(stepper: Any, until: Callable[[], bool]) -> Iterator[Path]:
             return
 
 
-def _many_to_come(stepper: Any) -> Callable[[], bool]:
-    """Return what tells after a step whether so many more are to come that they are better compiled."""
+def _many_to_come(stepper: Any, horizon: _Horizon, most: float) -> Callable[[], bool]:
+    """Return what tells after a step whether so many more are to come that they are better compiled.
+
+    Not while they grow: there will be fewer of them than it seems, as where there seem to be more than are ever taken.
+    """
     since, taken = float(stepper.t), 0
 
     def many() -> bool:
@@ -250,9 +256,49 @@ def _many_to_come(stepper: Any) -> Callable[[], bool]:
         if taken % _BEGINNING:
             return False
         mean, since = (stepper.t - since) / _BEGINNING, stepper.t
-        return stepper.t_bound - stepper.t > WORTH_COMPILING * mean
+        left, growing = horizon.after(), stepper.h_abs > _GROWING * mean
+        return not growing and WORTH_COMPILING * mean < left < most * mean
 
     return many
+
+
+class _Horizon:
+    """How far a law seems to lead: to the run's end, or to where one ends it if its functions go on falling so.
+
+    Parameters
+    ----------
+    traced : PythonLaw
+        The law.
+    begin : float
+        From when the stepper's times count, s.
+    stepper : OdeSolver
+        On its way.
+    """
+
+    def __init__(self, traced: PythonLaw, begin: float, stepper: Any) -> None:
+        self.ending = [name in (*phases.ENDS, "jam") for name in traced.names]
+        self.traced, self.begin, self.stepper = traced, begin, stepper
+        self.time, self.values = float(stepper.t), self._now()
+
+    def after(self) -> float:
+        """Return the time that seems to be left, s, seen over the steps since this was last asked."""
+        gone, before = self.stepper.t - self.time, self.values
+        self.time, self.values = float(self.stepper.t), self._now()
+        with np.errstate(divide="ignore", invalid="ignore"):
+            falls = np.where(before > self.values, self.values * gone / (before - self.values), math.inf)
+        return min([self.stepper.t_bound - self.time, *falls[self.values > 0]])
+
+    def _now(self) -> Array:
+        try:
+            values = self.traced.event_functions(self.begin + self.stepper.t, self.stepper.y.tolist())
+        except (ArithmeticError, ValueError):
+            return np.full(sum(self.ending), np.nan)
+        return np.array(values)[self.ending]
+
+
+def _most_steps(law: Law) -> float:
+    """Return how many steps of a law are waited for at most."""
+    return _BRIEF if law.brief else float(_PATIENCE["steps"])
 
 
 def _scale(y0: Array, arm: float, speed: float) -> Array:
