@@ -21,7 +21,7 @@ from .dense import Keep, Leg, TooMany
 from .laws import Law
 from .patience import Patience
 from .phases import Integrate, Segment, cut
-from .roots import root
+from .roots import root, until_one_falls
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import PythonLaw, python_law
 from .transitions import PhaseStart, ZeroCrossing
@@ -284,9 +284,7 @@ class _Horizon:
         """Return the time that seems to be left, s, seen over the steps since this was last asked."""
         gone, before = self.stepper.t - self.time, self.values
         self.time, self.values = float(self.stepper.t), self._now()
-        with np.errstate(divide="ignore", invalid="ignore"):
-            falls = np.where(before > self.values, self.values * gone / (before - self.values), math.inf)
-        return min([self.stepper.t_bound - self.time, *falls[self.values > 0]])
+        return min(self.stepper.t_bound - self.time, until_one_falls(before, self.values, gone))
 
     def _now(self) -> Array:
         try:
