@@ -86,7 +86,7 @@ def test_a_second_process_does_not_compile(machine: Machine) -> None:
     [
         ({}, [integrators.IN_HASTE]),
         ({"_WORTH_CARE": (100.0, 0.0)}, [integrators.IN_HASTE, integrators.WITH_CARE]),
-        ({"_WORTH_CARE": (1e4, 0.0), "_FIRST_LOOK": 20}, [integrators.IN_HASTE]),
+        ({"_WORTH_CARE": (1e5, 0.0), "_FIRST_LOOK": 20}, [integrators.IN_HASTE]),
         ({"_WORTH_UNROLLING": 1.0}, [integrators.IN_HASTE, integrators.UNROLLED]),
         ({"_WORTH_UNROLLING": 1.0, "_SHORT_LAW": 100}, [integrators.WITH_CARE, integrators.UNROLLED]),
     ],

@@ -35,8 +35,8 @@ _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 # A law's first steps in a run are made by code that is compiled in haste: it takes four times as long for a step, and a
 # tenth of a second to compile where what is made with care takes one to three. How long they are, and how its event
 # functions fall, tells how many are to come, and whether better code is worth its compilation: to what is made with
-# care where a kind of system is run three times or more, to loops unrolled in this one run. The steps are counted anew in each run, so that it has the same
-# digits whatever is compiled already. A short law is compiled with care at once.
+# care where a kind of system is run three times or more, to loops unrolled in this one run. The steps are counted anew
+# in each run, so that it has the same digits whatever is compiled already. A short law is compiled with care at once.
 _FIRST_LOOK = 100  # steps
 _GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
