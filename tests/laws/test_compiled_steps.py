@@ -202,6 +202,59 @@ def test_a_pole_of_a_formula_is_told_in_the_same_words(compile_at: int, monkeypa
         runge_kutta.solve(system, system.place(), np.linspace(0.0, 30.0, 3))
 
 
+CURVED = {  # runs that end where the support is as hollow as the body is round, long before they were to end
+    "torus": """
+body = { kind = "torus", radius = 0.0547724, rim_radius = 0.0185524, density = 1450.6 }
+start = { position = [-0.0389219, -0.100906], velocity = [-1.0191, 0.0256822], height = 0.0 }
+run = { duration = 2.91484, every = 0.02 }
+[support]
+kind = "ellipsoidal-bowl"
+semi_axes = [0.780151, 0.121782, 1.22505]
+friction = 0.376703
+kinetic_friction = 0.0876492
+restitution = 0.0
+motion = { kind = "precessing-tilt", angle = "180 deg", rate = 19.4172 }
+""",
+    "ring": """
+body = { kind = "ring", radius = 0.0166339, mass = 1.2189 }
+start = { position = [-0.0139648, 0.204229], spin = 2.17452, height = 0.00669226 }
+run = { duration = 3.0, every = 0.01 }
+[support]
+kind = "height-field"
+formula = "0.0205452*sin(29.6566*x)*cos(2.94579*x)"
+friction = 0.914354
+kinetic_friction = 0.0
+restitution = 0.135226
+motion = { kind = "uneven-spin", rate = 1.15237, variation = -0.492798, variation_rate = 0.193096 }
+""",
+    "slip whose steps grow before they shrink": """
+loads = [{ kind = "rolling-resistance", offset = 0.00148 }]
+start = { position = [0.0120094, -0.547027], spin = -0.322788, height = 0.0411317 }
+run = { duration = 2.0, every = 0.0125588 }
+[body]
+kind = "torus"
+radius = 0.0196534
+rim_radius = 0.0150842
+mass = 1.24498
+products = [-2.12132e-05, 1.53195e-05, 1.72678e-05]
+[support]
+kind = "ellipsoidal-bowl"
+semi_axes = [1.8455, 0.627171, 0.461982]
+friction = 0.358805
+motion = { kind = "tilt", angle = -0.0183536 }
+""",
+}
+
+
+@pytest.mark.parametrize("name", CURVED)
+def test_no_law_is_compiled_for_the_few_steps_to_where_it_ends_the_run(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("trundle.solve.compiled_loop.compiled", lambda *_: pytest.fail("compiled"))
+    run = tr.Scenario.loads(CURVED[name]).run()
+    assert run.events[-1].kind == "curved", run.events
+
+
 HIDDEN = """
 import sys
 sys.modules["heyoka"] = None

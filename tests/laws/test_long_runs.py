@@ -171,15 +171,74 @@ def test_a_quaternion_means_the_same_rotation_as_scipys() -> None:
     assert np.allclose([list(row) for row in ours.rows], theirs, rtol=0, atol=EXACT(4, 1))
 
 
-def test_short_steps_where_slip_begins_are_no_reason_to_unroll_its_loops() -> None:
+def test_short_steps_where_slip_begins_are_no_reason_to_compile_anything() -> None:
     # Its hundred first steps led over a tenth of a microsecond, and half a minute went into code for the rest.
     effort = taylor._Effort(cost=700)
     effort.after(100, 1e-7)
     effort.look(left=1.0)
-    assert effort.level == taylor.WITH_CARE
+    assert effort.level == taylor.IN_HASTE
     effort.after(4900, 1e-3)
     effort.look(left=1.0)
     assert effort.level == taylor.WITH_CARE  # five thousand for all of a second
     effort.after(50_000, 1e-3)
     effort.look(left=1.0)
     assert effort.level == taylor.UNROLLED  # as many again for each of the milliseconds to come
+
+
+@pytest.mark.parametrize(
+    ("look", "level"),
+    [
+        ({}, taylor.WITH_CARE),
+        ({"growing": True}, taylor.IN_HASTE),
+        ({"holds": lambda: 0.1}, taylor.IN_HASTE),  # a thousand steps
+        ({"holds": lambda: 0.9}, taylor.WITH_CARE),
+    ],
+)
+def test_a_law_is_compiled_with_care_only_for_as_many_steps_as_it_seems_to_hold(look: Any, level: int) -> None:
+    effort = taylor._Effort(cost=700)
+    effort.after(100, 1e-2)
+    effort.look(1.0, **look)
+    assert effort.level == level
+
+
+BRIEFLY = {
+    "hemisphere that comes to the rim": """
+body = { kind = "hemisphere", radius = 0.128034, density = 2508.35, moments = [0.000417, 0.000661259, 0.000396511] }
+start = { position = [0.148713, -0.0758385], velocity = [0.0376158, 0.258142], attitude = [0.0, -0.108489, "-90 deg"] }
+run = { duration = 1.96621, every = 0.02 }
+[support]
+kind = "height-field"
+formula = "0.010449*sin(5.23905*x)*cos(12.9582*x)"
+rim = 0.229554
+friction = 0.0394405
+""",
+    "torus whose steps are short where it begins to slip": """
+body = { kind = "torus", radius = 0.0684098, rim_radius = 0.0111881, mass = 0.188287, centre = [0, -0.01304, 0.002818] }
+start = { position = [0.105789, -0.0176573], velocity = [-0.0472598, 0.173451] }
+run = { duration = 2.0, every = 0.0142876 }
+[support]
+kind = "cone"
+half_angle = 0.138798
+rim = 0.267859
+friction = 0.918407
+motion = { kind = "rock", amplitude = "45 deg", rate = -25.8389, phase = -0.0378098 }
+""",
+}
+
+
+@pytest.mark.parametrize("name", BRIEFLY)
+def test_no_long_law_is_compiled_with_care_for_the_few_steps_to_where_it_ends(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    efforts: list[Any] = []
+    effort = taylor.Shared.effort
+
+    def noted(self: taylor.Shared, key: str, cost: int) -> Any:
+        efforts.append(effort(self, key, cost))
+        return efforts[-1]
+
+    monkeypatch.setattr(taylor.Shared, "effort", noted)
+    tr.Scenario.loads(BRIEFLY[name]).run()
+    long = [one for one in efforts if one.cost > taylor._SHORT_LAW]
+    assert max(one.steps for one in long) > 100  # they were looked at
+    assert {one.level for one in long} == {taylor.IN_HASTE}

@@ -39,6 +39,13 @@ def _compiled(function: Any, *signature: Any) -> Any:
 
 
 @_compiled
+def _copy(numbers: Any, into: Any) -> None:
+    """Copy numbers: to compile `into[:] = numbers`, which may not fit, takes numba two seconds."""
+    for i in range(numbers.size):
+        into[i] = numbers[i]
+
+
+@_compiled
 def _stage(which: Any, a: Any, k: Any, y: Any, h: Any, moved: Any, x: Any) -> None:
     """Put the state at which a stage's rates are wanted into x."""
     for i in range(y.size):
@@ -140,7 +147,8 @@ def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, 
     k, room, count, why = np.empty((16, y.size)), np.empty((3, y.size)), 0, FULL
     times[0], moved, new = t, room[0], room[1]
     while count < len(starts) and why == FULL:
-        k[0], shortest, rejected = f, 10 * (np.nextafter(t, np.inf) - t), False
+        _copy(f, k[0])
+        shortest, rejected = 10 * (np.nextafter(t, np.inf) - t), False
         step = max(step, shortest)
         while True:
             if not step >= shortest:
@@ -161,7 +169,7 @@ def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, 
             x[0] = begin + (t + c[which] * h)
             rates(x, k[which])
         _polynomial(d, k, y, new, h, terms[count])
-        starts[count] = y
+        _copy(y, starts[count])
         if values.shape[1] and _looked(functions, looks, begin + t, h, y, terms[count], x, values):
             why = LOOK
         for i in range(y.size):

@@ -6,9 +6,11 @@ SciPy takes the steps; where there are many, and numba is installed, a compiled 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,7 +23,7 @@ from .dense import Keep, Leg, TooMany
 from .laws import Law
 from .patience import Patience
 from .phases import Integrate, Segment, cut
-from .roots import root
+from .roots import root, until_one_falls
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import PythonLaw, python_law
 from .transitions import PhaseStart, ZeroCrossing
@@ -43,7 +45,12 @@ _RATES = 15  # evaluations of the law in a step of SciPy's
 OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
 _OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
 _BEGINNING = 20  # steps, after which one sees how many there will be
+_SEEN = 0.0025  # share of the steps to come to be done first: where slip begins, there seem to be far too many
+_GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
 WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
+
+
+Taken = Counter[type[Law]]  # steps of each law in a run, one by one
 
 
 class Path(Protocol):
@@ -96,16 +103,22 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 9))  # (5/7) g sin α
     0.714285714
     """
-    return phases.solve(integrate, system, start, times, tolerance, progress)
+    return phases.solve(partial(integrate, taken=Counter()), system, start, times, tolerance, progress)
 
 
 def integrate(
-    system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None = None
+    system: RollingSystem,
+    now: PhaseStart,
+    times: Array,
+    tolerance: float,
+    progress: Progress | None = None,
+    taken: Taken | None = None,
 ) -> Iterator[Segment]:
-    """Follow one law to its first stop."""
+    """Follow one law to its first stop, given how many steps one by one the run has taken before."""
     # It counts from where the law begins to hold: far from 0 no step would be short enough.
     end = float(times[-1]) - now.time if times.size else 0.0
-    for piece in _integrated(system, now, _Rows(times - now.time, len(now.state_vector)), end, tolerance, progress):
+    rows = _Rows(times - now.time, len(now.state_vector))
+    for piece in _integrated(system, now, rows, end, tolerance, progress, taken):
         here, times = times[: piece.times.size], times[piece.times.size :]
         if piece.stop is None:
             yield replace(piece, times=here)
@@ -117,10 +130,13 @@ def integrate(
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
     """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it."""
-    return dense, lambda: integrate
+    taken: Taken = Counter()
+    return partial(dense, taken=taken), lambda: partial(integrate, taken=Counter(taken))
 
 
-def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, most: int) -> Leg | TooMany:
+def dense(
+    system: RollingSystem, now: PhaseStart, end: float, tolerance: float, most: int, taken: Taken | None = None
+) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step."""
     paths = _Paths(np.asarray(now.state_vector, dtype=float), most)
 
@@ -130,7 +146,7 @@ def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, 
         return by_scipy * (_OF_SCIPY + each) + (paths.count - by_scipy) * OF_A_STEP
 
     try:
-        *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
+        *_, last = _integrated(system, now, paths, end - now.time, tolerance, None, taken)
     except _TooManyError:
         time = now.time + paths.reached
         return TooMany(lambda times: paths.at(times - now.time), paths.count, work(), time, paths.last)
@@ -160,8 +176,10 @@ def _integrated(
     end: float,
     tolerance: float,
     progress: Progress | None,
+    taken: Taken | None = None,
 ) -> Iterator[Segment]:
     """Follow one law to its first stop; all times count from its beginning."""
+    taken = Counter() if taken is None else taken
     law, begin, traced = now.law, now.time, _traced(system, now)
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
@@ -172,14 +190,14 @@ def _integrated(
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
-    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF} if law.brief else {}))
+    patience = Patience(begin, begin + end, **_PATIENCE | {"steps": _most_steps(law)})
     try:
         at = law.unpack(system, begin, y0)
         least = tolerance * _scale(y0, at.arm, at.scale(system))
         least[y0.size - law.unwatched :] = np.inf
 
         def onward(since: float, y: Array, until: float) -> Iterator[Path]:
-            paths = _paths(law, traced, begin, since, y, until, tolerance, least)
+            paths = _paths(law, traced, begin, since, y, until, tolerance, least, taken)
             return _watched(paths, patience, progress, begin)
 
         # What is briefly followed is handed on: no finer than the clock shows its end.
@@ -201,7 +219,15 @@ def _watched(paths: Iterable[Path], patience: Patience, progress: Progress | Non
 
 
 def _paths(
-    law: Law, traced: PythonLaw, begin: float, t: float, y: Array, end: float, tolerance: float, least: Array
+    law: Law,
+    traced: PythonLaw,
+    begin: float,
+    t: float,
+    y: Array,
+    end: float,
+    tolerance: float,
+    least: Array,
+    taken: Taken,
 ) -> Iterator[Path]:
     """Take steps to the end; those of a law that is stiff, and the first of any other, one by one."""
     from scipy.integrate import DOP853, Radau
@@ -224,7 +250,8 @@ def _paths(
             given["first_step"] = law.lasts
         stepper = DOP853(rates, t, y, end, **given)
         compiles = traced.compiled is not None and available()
-        yield from _one_by_one(stepper, _many_to_come(stepper) if compiles else lambda: False)
+        to_come = _StepsToCome(law, traced, begin, stepper, taken)
+        yield from _one_by_one(stepper, to_come.worth_compiling if compiles else lambda: False)
         if stepper.status == "running" and traced.compiled is not None:
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)
 
@@ -240,19 +267,60 @@ def _one_by_one(stepper: Any, until: Callable[[], bool]) -> Iterator[Path]:
             return
 
 
-def _many_to_come(stepper: Any) -> Callable[[], bool]:
-    """Return what tells after a step whether so many more are to come that they are better compiled."""
-    since, taken = float(stepper.t), 0
+class _StepsToCome:
+    """Tells after a step whether so many more of its law are to come that they are better compiled.
 
-    def many() -> bool:
-        nonlocal since, taken
-        taken += 1
-        if taken % _BEGINNING:
+    How many there will be, the last of them tell and how far the law seems to lead: to the run's end, or to where an
+    event function comes to zero that goes on falling as it fell. While steps grow nothing is known, nor where there
+    seem to be more than are ever taken; of very many a share is to be done first. Where half of what is worth it is
+    done, stretches of this law have come again and again: only what ends the run ends them.
+
+    Parameters
+    ----------
+    law, traced : Law, PythonLaw
+        What is followed.
+    begin : float
+        From when the stepper's times count, s.
+    stepper : OdeSolver
+        On its way.
+    taken : Counter
+        Steps of each law in the run so far; counted on here.
+    """
+
+    def __init__(self, law: Law, traced: PythonLaw, begin: float, stepper: Any, taken: Taken) -> None:
+        self.law, self.traced, self.begin, self.stepper, self.taken = law, traced, begin, stepper, taken
+        self.ending = np.array([name in (*phases.ENDS, "jam") for name in traced.names], dtype=bool)
+        self.count, self.time, self.values = 0, float(stepper.t), self._event_functions()
+
+    def worth_compiling(self) -> bool:
+        """Take account of a step, and tell."""
+        self.count += 1
+        self.taken[type(self.law)] += 1
+        if self.count % _BEGINNING:
             return False
-        mean, since = (stepper.t - since) / _BEGINNING, stepper.t
-        return stepper.t_bound - stepper.t > WORTH_COMPILING * mean
+        gone, left = self.stepper.t - self.time, self._left()
+        mean = gone / _BEGINNING
+        growing, coming = self.stepper.h_abs > _GROWING * mean, left / mean
+        seen = self.taken[type(self.law)] >= min(_SEEN * coming, WORTH_COMPILING / 2)
+        return seen and not growing and WORTH_COMPILING < coming < _most_steps(self.law)
 
-    return many
+    def _left(self) -> float:
+        """Return how much time seems to be left, s, seen over the steps since this was last asked."""
+        gone, before = self.stepper.t - self.time, self.values
+        self.time, self.values = float(self.stepper.t), self._event_functions()
+        which = self.ending | (2 * self.taken[type(self.law)] < WORTH_COMPILING)
+        return min(self.stepper.t_bound - self.time, until_one_falls(before[which], self.values[which], gone))
+
+    def _event_functions(self) -> Array:
+        try:
+            return np.array(self.traced.event_functions(self.begin + self.stepper.t, self.stepper.y.tolist()))
+        except (ArithmeticError, ValueError):
+            return np.full(len(self.traced.names), np.nan)
+
+
+def _most_steps(law: Law) -> float:
+    """Return how many steps of a law are waited for at most."""
+    return _BRIEF if law.brief else float(_PATIENCE["steps"])
 
 
 def _scale(y0: Array, arm: float, speed: float) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.parameters import numbers
+from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
 from . import corners, phases, runge_kutta
 from .charts import CHART, LAWS_OWN, Chart
@@ -23,6 +24,7 @@ from .kept_series import KeptSeries
 from .lowering import Lowered
 from .patience import Patience
 from .phases import Integrate, Segment, cut
+from .roots import until_one_falls
 from .samples import AT_ONCE, Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
@@ -31,11 +33,12 @@ _LEAST_CHUNK = 1000  # instants
 # Steps at most, and in units of `Lowered.cost`, between which progress is told and Ctrl-C is heard
 _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 # A law's first steps in a run are made by code that is compiled in haste: it takes four times as long for a step, and a
-# tenth of a second to compile where what is made with care takes one to three. How long they are tells how many are to
-# come, and whether better code is worth its compilation: to what is made with care where a kind of system is run three
-# times or more, to loops unrolled in this one run. The steps are counted anew in each run, so that it has the same
-# digits whatever is compiled already. A short law is compiled with care at once.
+# tenth of a second to compile where what is made with care takes one to three. How long they are, and how its event
+# functions fall, tells how many are to come, and whether better code is worth its compilation: to what is made with
+# care where a kind of system is run three times or more, to loops unrolled in this one run. The steps are counted anew
+# in each run, so that it has the same digits whatever is compiled already. A short law is compiled with care at once.
 _FIRST_LOOK = 100  # steps
+_GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
 # Steps to come for each unit of it, and the share of them to be done first: to unroll a long law takes a minute, and
 # where slip begins steps are a thousand times shorter than they will be.
@@ -128,7 +131,7 @@ class _Effort:
     cost: int  # of the law
     level: int = IN_HASTE
     steps: int = 0
-    lasted: float = 0.0  # s
+    pace: float = 0.0  # 1/s, of the last of them
 
     def __post_init__(self) -> None:
         if self.cost <= _SHORT_LAW:
@@ -141,16 +144,22 @@ class _Effort:
 
     def after(self, steps: int, lasted: float) -> None:
         """Take account of steps."""
-        self.steps, self.lasted = self.steps + steps, self.lasted + lasted
+        self.steps += steps
+        self.pace = steps / lasted if lasted > 0 else 0.0
 
-    def look(self, left: float) -> None:
-        """Decide by how many more steps there seem to be in the time left to the run, s."""
-        coming = min(self.steps * left / self.lasted, _PATIENCE["steps"]) if self.lasted > 0 else 0.0
-        careful = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost
-        worth = _WORTH_UNROLLING * self.cost
-        if coming > worth and self.steps > _DONE * worth:
+    def look(self, left: float, holds: Callable[[], float] = lambda: math.inf, *, growing: bool = False) -> None:
+        """Decide by how many more steps there seem to be in the time left to the run, s, for which the law holds, s.
+
+        While steps grow nothing is known, nor where there seem to be more than patience allows; but where there have
+        been as many as are worth it, there may be as many again.
+        """
+        coming, most = self.pace * left, _PATIENCE["steps"]
+        careful, worth = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost, _WORTH_UNROLLING * self.cost
+        if min(coming, most) > worth and self.steps > _DONE * worth:
             self.level = UNROLLED
-        elif self.level == IN_HASTE and (coming > careful or self.steps > 3 * careful):
+        elif self.level == IN_HASTE and (
+            self.steps > careful or (not growing and careful < coming <= most and self.pace * holds() > careful)
+        ):
             self.level = WITH_CARE
 
 
@@ -270,7 +279,7 @@ def _begun(system: RollingSystem, now: PhaseStart, end: float, tolerance: float,
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
-        run = _Run(borrow, shared.effort(key, lowered.cost), system, lowered, given, now.time, now.state_vector)
+        run = _Run(borrow, shared.effort(key, lowered.cost), system, lowered, given, now)
         run.patience, run.end, run.lasted = shared.patience(now.time, end), shared.end, lasted(system, now)
         yield run
 
@@ -309,19 +318,18 @@ class _Run:
         system: RollingSystem,
         lowered: Lowered,
         given: Sequence[float],
-        begin: float,
-        state: Sequence[float],
+        now: PhaseStart,
     ) -> None:
-        self.borrow, self.lowered, self.given = borrow, lowered, given
+        self.borrow, self.lowered, self.given, self.system, self.now = borrow, lowered, given, system, now
         self.to_law = partial(to_law, lowered.chart, system)
         self.effort, self.level = effort, effort.level
         self.integrator = borrow(self.level)
         self.patience: Patience
         self.progress: Progress | None = None
         self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
-        self.lasted, self.begun, self.end = math.inf, begin, math.inf
-        self.integrator.state[:] = lowered.chart.of_law(system, begin, state)
-        self._refer_to(begin)
+        self.lasted, self.begun, self.end = math.inf, now.time, math.inf
+        self.integrator.state[:] = lowered.chart.of_law(system, now.time, now.state_vector)
+        self._refer_to(now.time)
 
     @property
     def time(self) -> float:
@@ -401,8 +409,10 @@ class _Run:
 
         now = self.time
         self.effort.after(steps, now - self.counted_from)
-        if self.effort.steps >= _FIRST_LOOK:
-            self.effort.look(self.end - now)
+        goes_on = outcome in (heyoka.taylor_outcome.step_limit, heyoka.taylor_outcome.time_limit)
+        if goes_on and self.effort.steps >= _FIRST_LOOK:
+            growing = self.integrator.last_h * self.effort.pace > _GROWING
+            self.effort.look(self.end - now, self._holds, growing=growing)
         if outcome != heyoka.taylor_outcome.step_limit:
             return False
         if self.integrator.last_h == 0:  # the terms of the series are greater than any float
@@ -411,6 +421,16 @@ class _Run:
         if self.progress is not None:
             self.progress(now)
         return True
+
+    def _holds(self) -> float:
+        """Return for how long the law seems to hold, s: until an event function comes to zero that falls as it fell."""
+        (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
+        before, now = (self._event_functions(*at) for at in ((self.begun, self.now.state_vector), (self.time, state)))
+        return until_one_falls(before, now, self.time - self.begun)
+
+    def _event_functions(self, time: float, state: Sequence[float] | Array) -> Array:
+        found = self.now.law.event_functions(self.system, time, list(map(float, state)), self.now.event_parameters)
+        return np.array(list(map(as_float, found.values())))
 
     def _refer_to(self, time: float) -> None:
         self.reference, self.integrator.time = time, 0.0
