@@ -79,9 +79,13 @@ class Trajectory(Viewable, Plottable):
         return run
 
     def __getattr__(self, name: str) -> Any:
-        if name == "data" and "made" in self._kept:
-            vars(self)[name] = data = labels.dataset(self.system, *self._kept["made"])
-            return data
+        if name == "data":
+            made = self._kept.get("made")
+            if made is not None:
+                vars(self)[name] = labels.dataset(self.system, *made)
+                self._kept.pop("made", None)  # the dataset has the numbers now
+            if name in vars(self):  # perhaps by another thread meanwhile
+                return vars(self)[name]
         if name.startswith("_"):
             raise AttributeError(name)
         raise UnknownNameError("attribute of a Trajectory", name, _public_names())
