@@ -64,8 +64,7 @@ class Trajectory(Viewable, Plottable):
     events: tuple[Event, ...] = ()
     scenario: str = ""
     # What was once asked for, or is known from elsewhere: `form`; `card`, with the facts it speaks of; `view`, the run
-    # of which this is another view, with the facts of the view; `file`, from which it was loaded; `made`, samples and
-    # attributes, of which `data` is made once it is asked for.
+    # of which this is another view, with the facts of the view; `file`, from which it was loaded.
     _kept: dict[str, Any] = field(default_factory=dict, compare=False)
 
     @staticmethod
@@ -73,19 +72,18 @@ class Trajectory(Viewable, Plottable):
         samples: Samples, attributes: dict[str, Any], system: RollingSystem, start: State, scenario: str
     ) -> Trajectory:
         """Return the run that a method sampled; a viewer needs no dataset of it."""
-        kept = {"made": (samples, attributes)} | ({} if samples.form is None else {"form": samples.form})
+        kept = {} if samples.form is None else {"form": samples.form}
         run = Trajectory(None, system, start, attributes["method"], samples.events, scenario, kept)  # type: ignore[arg-type]
         del vars(run)["data"]
+        vars(run)["_sampled"] = samples, attributes
         return run
 
     def __getattr__(self, name: str) -> Any:
-        if name == "data":
-            made = self._kept.get("made")
-            if made is not None:
-                vars(self)[name] = labels.dataset(self.system, *made)
-                self._kept.pop("made", None)  # the dataset has the numbers now
-            if name in vars(self):  # perhaps by another thread meanwhile
-                return vars(self)[name]
+        own = vars(self)
+        if name == "data" and "_sampled" in own:
+            own[name] = data = labels.dataset(self.system, *own["_sampled"])
+            own.pop("_sampled", None)  # the dataset has the numbers now
+            return data
         if name.startswith("_"):
             raise AttributeError(name)
         raise UnknownNameError("attribute of a Trajectory", name, _public_names())
@@ -108,7 +106,8 @@ class Trajectory(Viewable, Plottable):
     @property
     def _attributes(self) -> dict[Any, Any]:
         """What the dataset says of itself."""
-        return self.data.attrs if "data" in vars(self) else self._kept["made"][1]
+        own = vars(self)
+        return own["_sampled"][1] if "_sampled" in own else self.data.attrs
 
     @property
     def changed(self) -> tuple[str, ...] | None:
@@ -126,8 +125,9 @@ class Trajectory(Viewable, Plottable):
     @property
     def samples(self) -> Samples:
         """The arrays in the inertial support frame, as the methods and the card take them."""
-        if "data" not in vars(self):
-            return self._kept["made"][0]
+        own = vars(self)
+        if "_sampled" in own:
+            return own["_sampled"][0]
         data = self.in_frame("support").data
         names = {part.name for part in fields(Samples)} & {"time", *labels.facts(self.system)}
         coordinates = [data[name].values for name in labels.coordinate_names(self.system)]
