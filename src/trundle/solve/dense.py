@@ -28,6 +28,7 @@ class Leg:
     stop: ZeroCrossing | None  # where it ended; None at the end of the run
     steps: int  # that it took
     work: float  # that they took, products: counted, never timed
+    begins: Array  # of the steps, s; none where they are not known
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class TooMany:
     states: Callable[[Array], Array]  # takes instants up to where the kept steps led, as `Leg` does
     steps: int  # so many
     work: float  # as of `Leg`
+    begins: Array
     time: float  # how far they led, s
     state_vector: Array  # there
 
@@ -100,13 +102,14 @@ class Dense:
         """About how much work it took, products."""
         return sum(_OF_AN_EVENT + leg.work for leg in self.legs)
 
-    def around(self, time: float, work: float) -> tuple[float, float]:
-        """Return the times between which it took so much work, half of it before an instant and half after, s."""
-        edges = np.array([self.start.time, *self.ends])
-        taken = np.cumsum([0, *(_OF_AN_EVENT + leg.work for leg in self.legs)])
-        here = np.interp(time, edges, taken)
-        first, last = (np.interp(here + half, taken, edges) for half in (-0.5 * work, 0.5 * work))
-        return float(first), float(last)
+    def work_until(self, times: Array) -> Array:
+        """Return about how much work it took from its start to some instants, products."""
+        edges, taken, before = [np.array([self.start.time])], [np.zeros(1)], 0.0
+        for leg, end in zip(self.legs, self.ends, strict=True):
+            edges.append(np.append(leg.begins, end))
+            taken.append(before + np.linspace(0.0 if leg.begins.size else leg.work, leg.work, leg.begins.size + 1))
+            before += _OF_AN_EVENT + leg.work
+        return np.interp(times, np.concatenate(edges), np.concatenate(taken))
 
     def _through(
         self, system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None
@@ -135,7 +138,7 @@ class Dense:
         parts = list(self.beside()(system, first, instants, tolerance, progress))
         stop, marks = parts[-1].stop, _Marks(self.beside, system, first, tolerance, parts)
         if kept is None:
-            return Leg(marks.states, stop, 0, 0.0)
+            return Leg(marks.states, stop, 0, 0.0, np.zeros(0))
         share = (kept.time - now.time) / ((end if stop is None else stop.time) - now.time)
 
         def states(at: Array) -> Array:
@@ -143,7 +146,8 @@ class Dense:
             return np.vstack([kept.states(before), marks.states(behind)])
 
         longer = 1 / max(share, 1e-6)
-        return Leg(states, stop, max(kept.steps, int(kept.steps * longer)), kept.work * max(1.0, longer))
+        steps = max(kept.steps, int(kept.steps * longer))
+        return Leg(states, stop, steps, kept.work * max(1.0, longer), np.zeros(0))
 
     def _end_after(self, now: PhaseStart) -> float:
         """Return up to when a law may be followed: the next kink, or the end, s."""

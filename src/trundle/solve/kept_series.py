@@ -34,6 +34,11 @@ class KeptSeries:
         """How many."""
         return len(self.begins)
 
+    @property
+    def when(self) -> Array:
+        """When they begin, s."""
+        return np.add(self.references, self.begins)
+
     def take(self, integrator: Any) -> bool:
         """Keep the step just made; go on."""
         if integrator.last_h > 0:

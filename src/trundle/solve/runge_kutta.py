@@ -149,9 +149,10 @@ def dense(
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None, taken)
     except _TooManyError:
         time = now.time + paths.reached
-        return TooMany(lambda times: paths.at(times - now.time), paths.count, work(), time, paths.last)
+        begins = now.time + paths.when
+        return TooMany(lambda times: paths.at(times - now.time), paths.count, work(), begins, time, paths.last)
     stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
-    return Leg(lambda times: paths.at(times - now.time), stop, paths.count, work())
+    return Leg(lambda times: paths.at(times - now.time), stop, paths.count, work(), now.time + paths.when)
 
 
 def first_steps(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, count: int) -> float:
@@ -421,6 +422,11 @@ class _Paths:
         if self.count > self.most:
             raise _TooManyError
         yield from ()
+
+    @property
+    def when(self) -> Array:
+        """When the steps begin."""
+        return np.concatenate([np.linspace(path.t_old, path.t, path.count, endpoint=False) for path in self.paths])
 
     @property
     def reached(self) -> float:

@@ -226,7 +226,8 @@ def dense(
             goes_on = _in_another_chart(system, now, leg.stop)
             ends += [leg.stop.time] if goes_on is not None else []
     steps, work = sum(each.steps for each in legs), sum(each.work for each in legs)
-    return leg if not ends else replace(leg, states=_joined(legs, ends), steps=steps, work=work)
+    begins = np.concatenate([each.begins for each in legs])
+    return leg if not ends else replace(leg, states=_joined(legs, ends), steps=steps, work=work, begins=begins)
 
 
 def _joined(legs: list[Leg | TooMany], ends: list[float]) -> Callable[[Array], Array]:
@@ -263,10 +264,10 @@ def _dense_in_chart(
                 stop = run.stop(reached)
             elif kept.steps > most and until < end:
                 (there,) = to_law(np.array([until]), run.integrator.state[None].copy())
-                return TooMany(states, kept.steps, run.work(tolerance, kept.steps), until, there)
+                return TooMany(states, kept.steps, run.work(tolerance, kept.steps), kept.when, until, there)
             else:
                 run.tidy(until)
-        return Leg(states, stop, kept.steps, run.work(tolerance, kept.steps))
+        return Leg(states, stop, kept.steps, run.work(tolerance, kept.steps), kept.when)
 
 
 @contextlib.contextmanager

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ..errors import OutOfDomainError, TurnsTooFastError
 from ..mechanics.system import RollingSystem, State
-from ..solve.compiled_steps import available
 from ..solve.dense import Dense
 from ..solve.exact import ClosedForm
 from ..solve.methods import Method
@@ -26,7 +25,7 @@ _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
 _WORK_FOLLOWED = 2e9  # products, in all of a dozen runs: a second or two
-_FEW_STEPS, _COMPILED = 2_000, 20  # once more, and how many times faster a compiled law takes them
+_WORK_FINER = 1.5e9  # products, up to which a run is followed more finely: a second or two
 _RUNS = 12  # about: the run itself, and one for each way in which its state can change
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
@@ -52,14 +51,18 @@ def same_again(
 
 def finer(system: RollingSystem, start: State, at: Samples, method: Method, kept: Dense | None) -> Iterator[CardFigure]:
     """Compare a Runge-Kutta run with one of a smaller tolerance: how exact it is, its tolerance alone does not say."""
-    pace = _COMPILED if available() and system.support.surface.recordable else 1
-    if method.name != "runge-kutta" or method.tolerance <= FINEST or kept is None or kept.steps > _FEW_STEPS * pace:
+    if method.name != "runge-kutta" or method.tolerance <= FINEST or kept is None:
         return
     with_more = replace(method, tolerance=max(FINEST, method.tolerance / 10))
     some = at.part(slice(None, None, max(1, at.time.size // _INSTANTS)))
+    some = some.part(kept.work_until(some.time) <= _WORK_FINER)
+    if some.time.size < 2:
+        return
     ours, theirs = at_the_same_times(some, with_more.solve(system, start, some.time))
     both = Compared(system, start, ours, theirs, method, method, sizes_of(system, ours), turned_in(at), kept)
     said = f"beside a run of tolerance {with_more.tolerance:g}, at {ours.time.size} instants"
+    if kept.work > _WORK_FINER:
+        said += f" up to {some.time[-1]:.6g} s"
     yield both.figure("accuracy reached", both.share, both.bound, said)
 
 
@@ -80,8 +83,11 @@ def cross_check(
     span, speed = float(at.time[-1] - start.time), largest(at.angular_velocity)
     times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _INSTANTS)
     ours = method.solve(system, start, times)
+    solve = other.dense(system, start, float(times[-1]))
+    if isinstance(solve, Dense):  # what it takes says how far changed starts can be followed
+        kept = solve
     try:
-        theirs = other.solve(system, start, times)
+        theirs = solve(times)
     except TurnsTooFastError:  # nothing to compare with
         return
     except OutOfDomainError:  # the run comes into a phase that no closed form covers: up to there
@@ -89,7 +95,7 @@ def cross_check(
         if not times.size:
             return
         try:
-            ours, theirs = (one.solve(system, start, times) for one in (method, other))
+            ours, theirs = method.solve(system, start, times), solve(times)
         except OutOfDomainError as error:  # which happens at another instant, or to one of them only
             yield checked(name, np.inf, 0.0, str(error).partition(". ")[0])
             return
@@ -184,26 +190,36 @@ class Compared:
         apart = min(self._apart_from, float(self.ours.time[-1]))
         met = int(np.searchsorted(events, self._apart_from))
         begin, end = met - _EVENTS_BEFORE, met + _EVENTS_AFTER
-        affordable = self._affordable(apart)
-        first = max(events[begin] if begin > 0 else -np.inf, affordable[0])
-        upto = self.ours.time <= affordable[1]
+        before, upto = self._affordable(apart, events[begin] if begin > 0 else -np.inf)
         if end < events.size:
             upto &= self.ours.time < events[end]
-        start, carried = self.start, 0.0
-        before = np.flatnonzero(self.ours.time < first)
-        if before.size:
-            start = self.theirs.state(int(before[-1]))
-            carried = float(np.max(np.maximum(self.share, self.turns * self.bound / self.angle_bound)[before]))
-            upto &= self.ours.time >= start.time
+        if before < 0:
+            return growth(self.system, self.start, self.ours.part(upto), self.follower, self.sizes, self.kept)
+        start = self.theirs.state(before)
+        carried = np.maximum(self.share, self.turns * self.bound / self.angle_bound)[: before + 1]
+        upto &= self.ours.time >= start.time
         grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes, self.kept)
-        return replace(grown, carried=carried, skipped=int(np.searchsorted(events, start.time)) if before.size else 0)
+        return replace(grown, carried=float(carried.max()), skipped=int(np.searchsorted(events, start.time)))
 
-    def _affordable(self, time: float) -> tuple[float, float]:
-        """Return between which times about an instant a small change can be followed in a dozen runs, s."""
-        most = _WORK_FOLLOWED / _RUNS
-        if self.kept is None or self.kept.work <= most:
-            return -np.inf, np.inf
-        return self.kept.around(time, most)
+    def _affordable(self, apart: float, first: float) -> tuple[int, NDArray[np.bool_]]:
+        """Return from which sample, -1 for the start, up to which others a small change is followed in a dozen runs.
+
+        From before an event, s, and shortly before they are apart, s. All of the runs together take no more work than a
+        second or two; or, where that does not lead from one sample to the next, than the run itself took.
+        """
+        times = self.ours.time
+        if self.kept is None:
+            return int(np.searchsorted(times, first)) - 1, np.ones(times.size, dtype=bool)
+        taken, most = self.kept.work_until(times), _WORK_FOLLOWED / _RUNS
+        here = float(self.kept.work_until(np.array([apart]))[0])
+        now = int(np.searchsorted(times, apart))
+        before = int(max(np.searchsorted(times, first), np.searchsorted(taken, here - most / 2))) - 1
+        if before >= 0 and here - taken[before] > most:
+            before = now - 1
+        begun = float(taken[before]) if before >= 0 else 0.0
+        least = float(taken[min(now, times.size - 1)])
+        upto: NDArray[np.bool_] = taken <= max(begun + most, min(least, begun + self.kept.work / _RUNS))
+        return before, upto
 
     @cached_property
     def _apart_from(self) -> float:
