@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 import threading
 from functools import cache
@@ -9,6 +10,9 @@ from functools import cache
 from . import terminal
 
 _STACK = 16 * 2**20  # bytes, of the thread that computes: some systems give it little
+_OBJECTS = (
+    20_000  # that are new before garbage is looked for: thirty times as many as usual, as hardly any is in cycles
+)
 _SHOWN = ("tilted-turntable", "level-turntable-nudged", "ball-in-a-trough")
 
 
@@ -46,3 +50,4 @@ def begin_worker() -> None:
     threading.stack_size(_STACK)
     terminal.install()
     begin()
+    gc.set_threshold(_OBJECTS)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
@@ -186,33 +185,6 @@ class ScenarioFile(Document):
     def _start(self) -> State:
         with _named_in("start", self.start):
             return self._system.place(**self.start.arguments())
-
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy, with other parts where given; what the original described does not come with it.
-
-        Parameters
-        ----------
-        update : mapping, optional
-            Parts by name; they are not checked.
-        deep : bool
-            Whether the parts are copied too.
-
-        Returns
-        -------
-        The same class
-            The copy.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> on_the_moon = tr.Scenario.load("tilted-turntable").model_copy(update={"gravity": 1.62})
-        >>> on_the_moon.system().gravity
-        1.62
-        """
-        copied = super().model_copy(update=update, deep=deep)
-        for name in ("_system", "_start"):
-            copied.__dict__.pop(name, None)
-        return copied
 
     # --- for editors ----------------------------------------------------------------------------------------
 

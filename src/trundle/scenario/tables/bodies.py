@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from pydantic import model_validator
@@ -29,6 +30,10 @@ class BodyTable(PartTable):
 
     def build(self) -> Body:
         """Return the body."""
+        return self._body
+
+    @cached_property
+    def _body(self) -> Body:
         # In the user's own words, so that the builder's messages show them.
         given = {name: written(getattr(self, name)) for name in fields_of(type(self).part)}
         make: Any = type(self).part

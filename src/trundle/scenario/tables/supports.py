@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import Field, model_validator
@@ -67,6 +68,10 @@ class OnSurface(PartTable):
 
     def build(self) -> Support:
         """Return the support."""
+        return self._support
+
+    @cached_property
+    def _support(self) -> Support:
         from ...mechanics.system import Support
 
         return Support(

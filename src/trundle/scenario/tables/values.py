@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
@@ -17,6 +18,33 @@ class Table(BaseModel):
     """A table of the file: frozen, and no key but those named. A diameter may stand instead of a radius."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy, with other parts where given; what the original described does not come with it.
+
+        Parameters
+        ----------
+        update : mapping, optional
+            Parts by name; they are not checked.
+        deep : bool
+            Whether the parts are copied too.
+
+        Returns
+        -------
+        The same class
+            The copy.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> on_the_moon = tr.Scenario.load("tilted-turntable").model_copy(update={"gravity": 1.62})
+        >>> on_the_moon.system().gravity
+        1.62
+        """
+        copied = super().model_copy(update=update, deep=deep)
+        for name in vars(copied).keys() - type(self).model_fields.keys():
+            del vars(copied)[name]
+        return copied
 
     @classmethod
     def _diameters(cls) -> dict[str, str]:
