@@ -47,7 +47,7 @@ _OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, a
 _BEGINNING = 20  # steps, after which one sees how many there will be
 _SEEN = 0.0025  # share of the steps to come to be done first: where slip begins, there seem to be far too many
 _GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
-WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
+WORTH_COMPILING = 1_500  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
 
 Taken = Counter[type[Law]]  # steps of each law in a run, one by one
