@@ -45,9 +45,9 @@ _RATES = 15  # evaluations of the law in a step of SciPy's
 OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
 _OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
 _BEGINNING = 20  # steps, after which one sees how many there will be
-_SEEN = 0.0025  # share of the steps to come to be done first: where slip begins, there seem to be far too many
+_SEEN = 0.0005  # share of the steps to come to be done first: where slip begins, there seem to be far too many
 _GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
-WORTH_COMPILING = 1_500  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
+WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
 
 Taken = Counter[type[Law]]  # steps of each law in a run, one by one
