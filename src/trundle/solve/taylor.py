@@ -37,7 +37,7 @@ _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 # functions fall, tells how many are to come, and whether better code is worth its compilation: to what is made with
 # care where a kind of system is run three times or more, to loops unrolled in this one run. The steps are counted anew
 # in each run, so that it has the same digits whatever is compiled already. A short law is compiled with care at once.
-_FIRST_LOOK = 100  # steps
+_FIRST_LOOK, _NEXT_LOOK = 100, 25  # steps: to see whether they grow, and whether an event function still falls
 _GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
 # Steps to come for each unit of it, and the share of them to be done first: to unroll a long law takes a minute, and
@@ -132,6 +132,7 @@ class _Effort:
     level: int = IN_HASTE
     steps: int = 0
     pace: float = 0.0  # 1/s, of the last of them
+    pause: int = _FIRST_LOOK  # steps to the next look
 
     def __post_init__(self) -> None:
         if self.cost <= _SHORT_LAW:
@@ -153,6 +154,7 @@ class _Effort:
         While steps grow nothing is known, nor where there seem to be more than patience allows; but where there have
         been as many as are worth it, there may be as many again.
         """
+        self.pause = _FIRST_LOOK if growing else _NEXT_LOOK
         coming, most = self.pace * left, _PATIENCE["steps"]
         careful, worth = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost, _WORTH_UNROLLING * self.cost
         if min(coming, most) > worth and self.steps > _DONE * worth:
@@ -324,6 +326,7 @@ class _Run:
         self.borrow, self.lowered, self.given, self.system, self.now = borrow, lowered, given, system, now
         self.to_law = partial(to_law, lowered.chart, system)
         self.effort, self.level = effort, effort.level
+        self.effort.pause = _FIRST_LOOK
         self.integrator = borrow(self.level)
         self.patience: Patience
         self.progress: Progress | None = None
@@ -398,7 +401,7 @@ class _Run:
             self.integrator.state[:], self.integrator.pars[:] = last.state, last.pars
             self.integrator.dtime = last.dtime
         self.counted_from = self.time
-        most = min(_AT_ONCE, _WORK_AT_ONCE // self.effort.cost + 1) if self.effort.settled else _FIRST_LOOK
+        most = min(_AT_ONCE, _WORK_AT_ONCE // self.effort.cost + 1) if self.effort.settled else self.effort.pause
         longest = self.lasted + (self.time - self.begun)
         if longest > GROWN * self.lasted:
             self.lasted = longest = math.inf
