@@ -116,6 +116,13 @@ class ClosedFormContract:
                     assert np.allclose(now.array(), later.array(), rtol=0, atol=EXACT(64, size))
         assert finite
 
+    def test_the_turning_alone_is_that_of_the_motion(self) -> None:
+        times = np.linspace(0.0, self.span, 7)
+        for system, start in self.cases():
+            motion = self.form.of(system, start)
+            alone, whole = motion.angular_velocity_at(times).array(), motion.motion_at(times)[2].array()
+            assert np.allclose(alone, whole, rtol=0, atol=EXACT(8, np.abs(whole).max()))
+
     def test_members_broadcast(self) -> None:
         # All cases as one call: parameters (n, 1) against times (m,).
         singles = [self.form.of(system, start) for system, start in self.cases()]

@@ -157,3 +157,12 @@ def test_one_message_names_the_key_and_the_remedy(body: str, key: str, remedy: s
     assert caught.value.key == key
     assert remedy in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_copy_builds_anew() -> None:
+    scenario = ScenarioFile.read({"body": {"kind": "solid-sphere", "radius": 0.02, "mass": 0.1}, **REST})
+    assert (scenario.body.build().mass, scenario.support.build().friction) == (0.1, None)
+    body = scenario.body.model_copy(update={"mass": 0.2})
+    support = scenario.support.model_copy(update={"friction": 0.3})
+    assert (body.build().mass, support.build().friction) == (0.2, 0.3)
+    assert scenario.model_copy(update={"body": body, "support": support}).system().body.mass == 0.2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import pytest
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
+from trundle.mechanics.loads import at_rest
 from trundle.mechanics.shapes import Sphere
 from trundle.solve.exact import closed_form
 
@@ -51,6 +53,37 @@ def run(
 
 
 # --- what it holds --------------------------------------------------------------------------------------
+
+
+def test_a_run_tells_the_same_before_and_after_it_is_labelled(method: str) -> None:
+    seen = run(method, title="A ball")
+    before = seen.samples
+    told = seen.frame, seen.title, seen.tolerance
+    again = pickle.loads(pickle.dumps(seen))  # noqa: S301  from just above
+    assert (
+        (seen.frame, seen.title, seen.tolerance)
+        == told
+        == tuple(seen.data.attrs[name] for name in ("frame", "title", "tolerance"))
+    )
+    for name in ("time", "position", "velocity", "angular_velocity", "orientation", "contact_force", "phase"):
+        assert np.array_equal(getattr(before, name), getattr(seen.samples, name))
+    assert again.data.identical(seen.data)
+    seen.data.position[0, 0] += 1.0
+    assert seen.samples.position[0, 0] == seen.data.position.values[0, 0]
+    seen.data["position"] = seen.data.position + 1.0
+    assert np.array_equal(seen.samples.position, seen.data.position.values)
+
+
+def test_what_was_found_out_of_a_system_stays_with_it() -> None:
+    system = replace(SYSTEM)
+    moved = SYSTEM.place((0.2, 0.03), (0.05, 0.2))
+    first, second = (run(system=system, start=start).data.position[0, 0].item() for start in (START, moved))
+    assert (first, second) == (0.1, 0.2)  # of another start it finds another contact
+    assert run(system=system).data.identical(run().data)
+    copies = pickle.loads(pickle.dumps(system)), replace(system, gravity=1.62)  # noqa: S301  as above
+    assert copies[0] == system
+    assert not any(one._known for one in copies)
+    assert copies[1].weight.force(at_rest(1.0)).z > system.weight.force(at_rest(1.0)).z
 
 
 def test_labels(method: str) -> None:
