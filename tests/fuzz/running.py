@@ -249,6 +249,15 @@ def _warm_up() -> None:
     trundle.solve.taylor.available()
     tr.Scenario.load("tilted-turntable").run(duration=0.1, every=0.02)
     tr.Scenario.load("rocking-hemisphere").run("runge-kutta", duration=0.1, every=0.02).card()
+    compiling = os.fork()  # the loop that numba keeps: a user waits for it once, and no scenario is killed for it
+    if not compiling:
+        try:
+            from trundle.solve.compiled_loop import advance
+
+            advance()
+        finally:
+            os._exit(0)
+    os.waitpid(compiling, 0)
 
 
 def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT) -> Iterator[Outcome]:

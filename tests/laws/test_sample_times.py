@@ -150,21 +150,21 @@ def test_a_run_that_is_gone_through_once_can_be_asked_for_any_instants(method, m
 
 
 @pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
-def test_a_window_of_so_much_work_is_short_where_the_work_is(method):
-    # The leg in which a ball falls takes far less work for a second than those in which it slips and rolls.
+def test_the_work_until_an_instant_is_that_of_the_steps_and_events_until_then(method):
     system, start = falling()
     read = Method.of(method).dense(system, start, 3.0)
     read(np.array([0.0, 3.0]))
     edges = np.array([0.0, *read.ends])
     an_event = (read.work - sum(leg.work for leg in read.legs)) / len(read.legs)
-    for middle in (0.05, 0.3, 1.5):
-        first, last = read.around(middle, 0.5 * read.work)
-        shares = np.clip(np.minimum(last, edges[1:]) - np.maximum(first, edges[:-1]), 0.0, None) / np.diff(edges)
-        within = float(shares @ [an_event + leg.work for leg in read.legs])
-        cut = first == 0.0 or last == read.ends[-1]
-        assert first <= middle <= last
-        assert within == pytest.approx(0.5 * read.work) or (cut and within < 0.5 * read.work)
-    assert read.around(1.5, 2.1 * read.work) == (0.0, 3.0)
+    whole = np.cumsum([an_event + leg.work for leg in read.legs]) - an_event
+    passed = np.append(whole[:-1] + an_event, whole[-1])  # at an event it is done
+    assert read.work_until(np.array([0.0, *read.ends])) == pytest.approx([0.0, *passed])
+    for leg, begin, done in zip(read.legs, edges, [0.0, *(whole + an_event)], strict=False):
+        assert leg.begins.size == leg.steps > 0
+        assert (np.diff([begin - 1e-12, *leg.begins, read.ends[-1]]) > 0).all()
+        each = done + leg.work * np.arange(leg.steps) / leg.steps
+        assert read.work_until(leg.begins[1:]) == pytest.approx(each[1:])
+    assert (np.diff(read.work_until(np.linspace(-1.0, 4.0, 2001))) >= 0).all()
 
 
 @pytest.mark.parametrize("method", ["taylor", "runge-kutta"])

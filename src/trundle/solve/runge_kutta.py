@@ -260,7 +260,8 @@ def _paths(
 def _one_by_one(stepper: Any, until: Callable[[], bool]) -> Iterator[Path]:
     """Take steps of SciPy's to the end, or to where it is said after one that they are enough."""
     while stepper.status == "running":
-        message = stepper.step()
+        with np.errstate(over="ignore", invalid="ignore"):  # of a step that is refused, or ends in words
+            message = stepper.step()
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
             raise StuckError(float(stepper.t), stepper.y.copy(), message or "The rates are no longer finite.")
         yield _OneStep(float(stepper.t_old), float(stepper.t), stepper.dense_output())

@@ -40,8 +40,8 @@ _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 _FIRST_LOOK, _NEXT_LOOK = 100, 25  # steps: to see whether they grow, and whether an event function still falls
 _GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
-# Steps to come for each unit of it, and the share of them to be done first: to unroll a long law takes a minute, and
-# where slip begins steps are a thousand times shorter than they will be.
+# Steps to come for each unit of it, and the share of those to come that are to be done first: to unroll a long law
+# takes a minute, and where slip begins steps are a thousand times shorter than they will be.
 _WORTH_UNROLLING, _DONE = 4000.0, 0.01
 _SHORT_LAW = 100  # by `Lowered.cost`
 _HASTE, _OF_ANY_STEP = 3.0, 3e4  # how many times slower that code is; products that take as long as what is not the law
@@ -151,18 +151,18 @@ class _Effort:
     def look(self, left: float, holds: Callable[[], float] = lambda: math.inf, *, growing: bool = False) -> None:
         """Decide by how many more steps there seem to be in the time left to the run, s, for which the law holds, s.
 
-        While steps grow nothing is known, nor where there seem to be more than patience allows; but where there have
-        been as many as are worth it, there may be as many again.
+        While steps grow nothing is known, nor where there seem to be more than patience allows, or so many that a share
+        of them is to be done first; but where there have been as many as are worth it, there may be as many again.
         """
         self.pause = _FIRST_LOOK if growing else _NEXT_LOOK
         coming, most = self.pace * left, _PATIENCE["steps"]
         careful, worth = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost, _WORTH_UNROLLING * self.cost
         if min(coming, most) > worth and self.steps > _DONE * worth:
             self.level = UNROLLED
-        elif self.level == IN_HASTE and (
-            self.steps > careful or (not growing and careful < coming <= most and self.pace * holds() > careful)
-        ):
-            self.level = WITH_CARE
+        elif self.level == IN_HASTE:
+            seen = not growing and careful < coming <= min(most, self.steps / _DONE)
+            if self.steps > careful or (seen and self.pace * holds() > careful):
+                self.level = WITH_CARE
 
 
 @dataclass
