@@ -146,7 +146,7 @@ class Computation:
             raise refused(504, message, "run.duration", kind="TimeUpError") from None
 
     async def _in_process(self) -> Any:
-        for _ in range(2):  # an idle process that was killed breaks its pool; the next one is whole
+        for _ in range(1 + self.processes.count):  # an idle process that was killed breaks its pool; so may be all
             with suppress(BrokenProcessPool):
                 self._future = await self.processes.schedule(self.most, *self.work)
                 return await asyncio.wrap_future(self._future)

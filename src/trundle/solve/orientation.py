@@ -273,9 +273,8 @@ def _count_above(bound: float, sizes: Array) -> int:
 def _taylor(coefficients: Array) -> Pairs:
     """Return the series (2, terms, total) of q for Ω's coefficients (3, powers, total)."""
     most, (_, powers, total) = _terms_needed(coefficients), coefficients.shape
-    turning: Any = np.zeros(
-        (4, powers, 4, total)
-    )  # Ω q = (turning) q for each power of x, so that one sum makes a term
+    # Ω q = (turning) q for each power of x, so that one sum makes a term.
+    turning: Any = np.zeros((4, powers, 4, total))
     for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         turning[1 + a, :, 0] = turning[1 + c, :, 1 + b] = coefficients[a]
         turning[0, :, 1 + a] = turning[1 + b, :, 1 + c] = -coefficients[a]
