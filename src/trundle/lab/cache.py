@@ -11,9 +11,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-_WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")
+from .requests import JSON, PICTURE, SCENE
+
+_WORDY = (JSON, PICTURE, "application/toml", "text/csv", "text/html")
 # What is worth compressing, and how hard gzip tries: of numbers, as in a scene, more hardly saves more.
-_PACKED = {"application/octet-stream": 3} | dict.fromkeys(_WORDY, 5)
+_PACKED = {SCENE: 3} | dict.fromkeys(_WORDY, 5)
 _SHORT = 1000  # bytes, that are sent as they are
 
 

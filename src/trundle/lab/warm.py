@@ -10,9 +10,8 @@ from functools import cache
 from . import terminal
 
 _STACK = 16 * 2**20  # bytes, of the thread that computes: some systems give it little
-_OBJECTS = (
-    20_000  # that are new before garbage is looked for: thirty times as many as usual, as hardly any is in cycles
-)
+# New objects before garbage is looked for: thirty times as many as usual, since hardly any is in cycles.
+_OBJECTS = 20_000
 _SHOWN = ("tilted-turntable", "level-turntable-nudged", "ball-in-a-trough")
 
 

@@ -45,7 +45,7 @@ def remembered(function: Callable[[Any], T]) -> Callable[[Any], T]:
     multiplied
     (9.0, 9.0)
     """
-    name = f"_{function.__name__}"
+    name = f"{function.__module__}.{function.__qualname__}"  # no attribute of a part is named so
 
     @wraps(function)
     def answer(part: Any) -> T:
