@@ -74,3 +74,22 @@ def test_no_slider_leads_to_a_refusal(page: Page, name: str) -> None:
     assert len(known) > 10
     told = json.loads(possible([one for _, one in known]).body)
     assert [(end, why) for (end, _), why in zip(known, told, strict=True) if why] == []
+
+
+def test_sliders_built_while_their_ends_are_sought_find_theirs(visitor: Visitor) -> None:
+    page = visitor.open("#/compare", drawn=False, cards=False)
+    # The reach of a place is that of the scene, which is laid out a frame later: here while the first ends are sought.
+    page.evaluate("""() => {
+        const [draw, ask] = [window.requestAnimationFrame, window.fetch]
+        let letGo
+        const sought = new Promise(resolve => { letGo = resolve })
+        window.requestAnimationFrame = what => void sought.then(() => draw(what))
+        window.fetch = async (...given) => {
+            const ends = String(given[0]).endsWith('/api/possible')
+            if (ends) letGo()
+            if (ends) await new Promise(resolve => setTimeout(resolve, 300))
+            return ask(...given)
+        }
+        location.hash = "#/bench?name=superball"
+    }""")
+    expect(page.locator(".controls")).to_have_attribute("data-ends", files.title_of("superball"), timeout=60_000)

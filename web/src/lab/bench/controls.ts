@@ -1,7 +1,7 @@
 /** The panel of controls: built from the layout of the scenario, kept in step with the store. */
 import { t } from '../../languages/translate'
 import { hide, say } from '../../viewer/elements'
-import type { ApiError } from '../api'
+import { type ApiError, isAbort } from '../api'
 import type { App } from '../app'
 import { cleanup, fill, h, uniqueId } from '../dom'
 import type { Parts } from '../parts'
@@ -19,7 +19,7 @@ export interface Controls {
   /** Show what is wrong at the control in hand, or else at the one that is meant; returns it in the words of labels. */
   complain(error: ApiError | null): string
   /** Ask where the sliders end, with the scenario as it is. */
-  findEnds(): Promise<void>
+  findEnds(): void
   dispose(): void
 }
 
@@ -44,6 +44,8 @@ export function createControls(app: App): Controls {
   let wrong: ApiError | null = null
   let parts: Parts | undefined
 
+  /** Its ends are asked for or known: controls that are built anew ask again. */
+  let sought: Scenario | undefined
   /** The control that was changed last. */
   let hand: Path | null = null
   const changes = new Map<Path, (now: Scenario, value: Json) => Scenario>()
@@ -181,7 +183,8 @@ export function createControls(app: App): Controls {
     if (!parts) return
     const sections = layout(scenario, reach, parts)
     const now = shapeOf(sections)
-    if (now !== shape) {
+    const anew = now !== shape
+    if (anew) {
       shape = now
       build(sections)
     }
@@ -196,6 +199,7 @@ export function createControls(app: App): Controls {
       field?.update(valueAt(scenario, at) ?? (item.fallback as Json | undefined))
     }
     place()
+    if (anew && sought === scenario) findEnds()
   }
 
   /** The error at the control of its key, or of the nearest one; above all where none fits. */
@@ -235,6 +239,27 @@ export function createControls(app: App): Controls {
     )
   }
 
+  function findEnds(): void {
+    sought = store.scenario
+    endsFound(sought, fields).catch((error: unknown) => {
+      if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
+    })
+  }
+
+  async function endsFound(scenario: Scenario, asked: Field[]): Promise<void> {
+    element.removeAttribute('data-ends')
+    const sliding = asked.map((field) => ({
+      now: field.now,
+      at: field.at,
+      share: field.share,
+      with: (value: Json) => rollingAgain(changes.get(field.path)!(scenario, value)),
+    }))
+    const ends = await endsOf(sliding, (scenarios) => app.api.possible(scenarios), inWords)
+    if (store.scenario !== scenario || fields !== asked) return
+    for (const [i, field] of asked.entries()) field.limit(ends[i]!)
+    element.dataset.ends = scenario.title ?? '' // for tests: known of this scenario
+  }
+
   undo.add(
     store.subscribe((scenario, { source }) => {
       if (source !== 'control') {
@@ -269,20 +294,7 @@ export function createControls(app: App): Controls {
       if (error === null) for (const field of fields) field.accept()
       return error ? inWords(error.message) : ''
     },
-    async findEnds() {
-      element.removeAttribute('data-ends')
-      const [scenario, asked] = [store.scenario, fields]
-      const sliding = asked.map((field) => ({
-        now: field.now,
-        at: field.at,
-        share: field.share,
-        with: (value: Json) => rollingAgain(changes.get(field.path)!(scenario, value)),
-      }))
-      const ends = await endsOf(sliding, (scenarios) => app.api.possible(scenarios), inWords)
-      if (store.scenario !== scenario || fields !== asked) return
-      for (const [i, field] of asked.entries()) field.limit(ends[i]!)
-      element.dataset.ends = scenario.title ?? '' // for tests: known of this scenario
-    },
+    findEnds,
     dispose: () => undo.run(),
   }
 }

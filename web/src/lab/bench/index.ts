@@ -69,9 +69,7 @@ function _mount(host: HTMLElement, app: App): () => void {
     },
     settled: (scene) => {
       app.announce(sentence(scene))
-      controls.findEnds().catch((error: unknown) => {
-        if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
-      })
+      controls.findEnds()
     },
     failed(error) {
       if (isAbort(error)) return
