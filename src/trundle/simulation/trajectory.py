@@ -110,6 +110,13 @@ class Trajectory(Viewable, Plottable):
         return own["_sampled"][1] if "_sampled" in own else self.data.attrs
 
     @property
+    def _ends(self) -> tuple[float, float]:
+        """When its first and its last sample are, s."""
+        own = vars(self)
+        time = own["_sampled"][0].time if "_sampled" in own else self.data.time.values
+        return float(time[0]), float(time[-1])
+
+    @property
     def changed(self) -> tuple[str, ...] | None:
         """What has changed in the file of a loaded run since it was saved; None where the file cannot tell."""
         file = self._kept.get("file")
@@ -203,7 +210,7 @@ class Trajectory(Viewable, Plottable):
         0.25
         """
         wanted = np.atleast_1d(np.asarray(times, dtype=float))
-        first, last = float(self.data.time.values[0]), float(self.data.time.values[-1])
+        first, last = self._ends
         inside = wanted.size and np.isfinite(wanted).all() and wanted[0] >= first and wanted[-1] <= last
         if not inside or (np.diff(wanted) < 0).any():
             raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
@@ -211,9 +218,12 @@ class Trajectory(Viewable, Plottable):
         check_room(wanted.size, each, "times", received, "ask for {:,} at a time".format)
         once, places = np.unique(wanted, return_inverse=True)
         samples = Method(self.method, self.tolerance).solve(self.system, self.start, once)
-        samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier
-        data = labels.dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
-        return replace(self, data=data, _kept=dict(self._kept)).in_frame(self.frame)
+        # At the rim an integrator may stop a rounding earlier.
+        samples = replace(samples, time=once, events=self.events).part(places)
+        attributes = {**self._attributes, "frame": "support"}
+        found = Trajectory._of(samples, attributes, self.system, self.start, self.scenario)
+        found._kept.update(self._kept)
+        return found.in_frame(self.frame)
 
     def card(self) -> Card:
         """Return the verification card: what was checked, and how well it held.
