@@ -7,7 +7,7 @@ import statistics
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 from lab_load import served
 from measure import BrokenBenchmarkError, Row, check, seconds
@@ -21,21 +21,32 @@ POINTS = 10_000
 
 TITLE = "The lab's page: from a change to its picture, while a number is dragged; and playing a path of 10 000 points"
 
-# The number that is dragged, and from which of its slider's thousand steps on. A light rattleback rocks more slowly:
-# the steps taken are those about its own mass. The ball that bounces does so 38 times, each of them a closed form.
-SCENARIOS = {
-    "level-turntable-nudged": ("support.motion.rate", CLOSED, 300),
-    "tilted-turntable": ("support.tilt", CLOSED, 300),
-    "ball-in-a-trough": ("body.radius", CLOSED, 300),
-    "free-turntable-ellipse": ("support.motion.rate", CLOSED, 300),
-    "turntable-starting-up": ("body.radius", CLOSED, 300),
-    "chaplygin-ball": ("body.mass", CLOSED, 300),
-    "incline-with-slip": ("support.tilt", CLOSED, 300),
-    "bouncing-ball-with-backspin": ("body.radius", CLOSED, 300),
-    "ball-in-a-turning-bowl": ("support.motion.rate", NUMERICAL, 300),
-    "turntable-drop": ("support.motion.rate", NUMERICAL, 300),
-    "rattleback": ("body.mass", NUMERICAL, 640),
-}
+
+class Drag(NamedTuple):
+    """A number that is dragged, from which of its slider's thousand steps on, and within what its pictures come."""
+
+    name: str
+    path: str
+    most: float
+    first: int = 300
+
+
+# A light rattleback rocks more slowly: the steps taken are those about its own mass. The ball that bounces does so 38
+# times, each of them a closed form. Chaplygin's ball has one while its momentum is upright, which another mass ends.
+DRAGS = (
+    Drag("level-turntable-nudged", "support.motion.rate", CLOSED),
+    Drag("tilted-turntable", "support.tilt", CLOSED),
+    Drag("ball-in-a-trough", "body.radius", CLOSED),
+    Drag("free-turntable-ellipse", "support.motion.rate", CLOSED),
+    Drag("turntable-starting-up", "body.radius", CLOSED),
+    Drag("chaplygin-ball", "gravity", CLOSED),
+    Drag("incline-with-slip", "support.tilt", CLOSED),
+    Drag("bouncing-ball-with-backspin", "body.radius", CLOSED),
+    Drag("chaplygin-ball", "body.mass", NUMERICAL),
+    Drag("ball-in-a-turning-bowl", "support.motion.rate", NUMERICAL),
+    Drag("turntable-drop", "support.motion.rate", NUMERICAL),
+    Drag("rattleback", "body.mass", NUMERICAL, 640),
+)
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 # The processor draws the stage, and the rest of the page by the quicker way for one; no name is resolved.
 SOFTWARE = (
@@ -102,25 +113,26 @@ def rows() -> Iterator[Row]:
     with served() as (_, port), browser() as launched:
         time.sleep(SETTLING)
         # A machine's speed changes for seconds at a time: all are asked before any is asked again.
-        each = [(name, filled) for name in SCENARIOS for filled in (True, False)]
+        each = [(drag, filled) for drag in DRAGS for filled in (True, False)]
         rounds = [{which: _dragged(launched, port, *which, turn) for which in each} for turn in range(ROUNDS)]
         best = min(loop for one in rounds for pairs in one.values() for loop, _ in pairs)
-        for name, filled in each:
-            pairs = [pair for one in rounds for pair in one[name, filled]]
+        for drag, filled in each:
+            pairs = [pair for one in rounds for pair in one[drag, filled]]
             times = sorted(time for _, time in pairs)
             speed = best / statistics.median(loop for loop, _ in pairs)
-            what = f"{name}: half within" if filled else "  with no pixel filled"
-            raw = f"9 of 10 within {seconds(times[int(0.9 * len(times))])}; the machine at {speed:.2f} of its best"
-            most = SCENARIOS[name][1] if filled else None
-            yield Row(what, statistics.median(times), most=most, raw=raw, kind="time")
+            what = f"{drag.name}, {drag.path}: 9 of 10 within" if filled else "  with no pixel filled"
+            raw = f"half within {seconds(statistics.median(times))}; the machine at {speed:.2f} of its best"
+            most = drag.most if filled else None
+            yield Row(what, times[int(0.9 * len(times))], most=most, raw=raw, kind="time")
         yield from _played(launched, port)
 
 
-def _dragged(launched: Any, port: int, name: str, filled: bool, turn: int) -> list[tuple[float, float]]:
+def _dragged(launched: Any, port: int, drag: Drag, filled: bool, turn: int) -> list[tuple[float, float]]:
     """Of each change the time of a loop just before, which tells how fast the machine is then, and its own, s."""
-    page, (path, _, first) = opened(launched, port, name, filled), SCENARIOS[name]
-    first += (0 if filled else 4) + 9 * turn * CHANGES  # what was asked for before would come from the cache
-    pairs = [(_loop(), page.evaluate(CHANGE, [path, first + 9 * i])) for i in paused(page, CHANGES)]
+    page = opened(launched, port, drag.name, filled)
+    # What was asked for before would come from the cache.
+    first = drag.first + (0 if filled else 4) + 9 * turn * CHANGES
+    pairs = [(_loop(), page.evaluate(CHANGE, [drag.path, first + 9 * i])) for i in paused(page, CHANGES)]
     page.context.close()
     return pairs
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 import trundle as tr
 
@@ -62,3 +62,32 @@ def test_a_curve_is_in_step_with_the_film_and_leads_to_its_instants(page: Page) 
         assert page.locator(".playdot").first.get_attribute("transform") != before
 
     eventually(page, there)
+
+
+def test_curves_that_nobody_looks_at_come_when_the_numbers_rest(page: Page) -> None:
+    bench, asked = Bench(page), list[bool]()
+    page.route("**/api/simulate", lambda route: _note(route, asked))
+    curve = page.locator(".curve-place").first
+
+    def come() -> None:
+        assert asked[-1:] == [True]
+
+    def drag(share: float) -> list[bool]:
+        """Drag a slider, and return of each scene whether it was asked for with curves, up to one that was."""
+        asked.clear()
+        bench.slide("start.velocity.0", share)
+        eventually(page, come)
+        return asked[:]
+
+    shown = curve.get_attribute("aria-label") or ""
+    bench.tab("Numbers")
+    *moving, _ = drag(0.7)
+    assert set(moving) == {False}
+    bench.tab("Curves")
+    expect(curve).not_to_have_attribute("aria-label", shown)
+    assert all(drag(0.3))
+
+
+def _note(route: Route, asked: list[bool]) -> None:
+    asked.append(route.request.post_data_json.get("curves", True))
+    route.continue_()

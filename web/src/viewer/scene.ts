@@ -152,12 +152,7 @@ export const PHASE = { rolling: 0, slipping: 1, flight: 2, resting: 3 } as const
 const MAGIC = 'TRUNDLE1'
 const FORMAT = 3
 const START = 16
-/** Integers of a number's width, which wrap where they overflow. */
-const WORDS: Record<number, { new (buffer: ArrayBufferLike): object }> = {
-  1: Uint8Array,
-  4: Uint32Array,
-  8: BigUint64Array,
-}
+const WRAP = 2 ** 32
 const TYPES = { float32: Float32Array, float64: Float64Array, uint32: Uint32Array, uint8: Uint8Array }
 
 /** Read a packed scene. */
@@ -182,18 +177,57 @@ export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
 /** A column: all first bytes of its rows, then all second bytes, and so on; these are second differences of integers. */
 function read(whole: Uint8Array, base: number, name: string, { dtype, shape, offset }: ColumnHeader): ColumnArray {
   const column = new TYPES[dtype](shape.reduce((product, side) => product * side, 1))
-  const bytes = new Uint8Array(column.buffer)
   const begin = base + offset
-  const end = begin + bytes.length
+  const end = begin + column.byteLength
   if (end > whole.length) throw new Error(`The column ${name} ends at byte ${end} of ${whole.length}.`)
   const rows = shape[0] ?? 1
-  const width = bytes.length / rows
-  for (let plane = 0, from = begin; plane < width; plane++)
-    for (let to = plane; to < bytes.length; to += width) bytes[to] = whole[from++]!
-  const words = new WORDS[column.BYTES_PER_ELEMENT]!(column.buffer) as Uint32Array // or of bigints: they add alike
+  const size = column.BYTES_PER_ELEMENT
   const side = column.length / rows
-  for (let time = 0; time < 2; time++) for (let i = side; i < words.length; i++) words[i]! += words[i - side]!
+  const add = size === 1 ? addBytes : size === 4 ? addWords : addLongs
+  for (let part = 0; part < side; part++) add(whole, begin + part * size * rows, rows, column.buffer, part, side)
   return column
+}
+
+/** Sums up twice what belongs to one place of each row, `step` numbers apart; sums wrap. */
+type Add = (whole: Uint8Array, from: number, rows: number, to: ArrayBufferLike, first: number, step: number) => void
+
+const addBytes: Add = (whole, from, rows, to, first, step) => {
+  const bytes = new Uint8Array(to)
+  for (let i = first, at = from, grown = 0, sum = 0; at < from + rows; at++, i += step) {
+    grown += whole[at]!
+    sum = (sum + grown) & 255
+    bytes[i] = sum
+  }
+}
+
+const addWords: Add = (whole, from, rows, to, first, step) => {
+  const words = new Uint32Array(to)
+  for (let i = first, at = from, grown = 0, sum = 0; at < from + rows; at++, i += step) {
+    grown = (grown + wordAt(whole, at, rows)) >>> 0
+    sum = (sum + grown) >>> 0
+    words[i] = sum
+  }
+}
+
+/** Word by word, since to add big integers takes ten times as long. */
+const addLongs: Add = (whole, from, rows, to, first, step) => {
+  const words = new Uint32Array(to)
+  let [grown, grownHigh, sum, sumHigh] = [0, 0, 0, 0]
+  for (let i = 2 * first, at = from; at < from + rows; at++, i += 2 * step) {
+    grown += wordAt(whole, at, rows)
+    grownHigh = (grownHigh + wordAt(whole, at + 4 * rows, rows) + Number(grown >= WRAP)) >>> 0
+    grown >>>= 0
+    sum += grown
+    sumHigh = (sumHigh + grownHigh + Number(sum >= WRAP)) >>> 0
+    sum >>>= 0
+    words[i] = sum
+    words[i + 1] = sumHigh
+  }
+}
+
+function wordAt(whole: Uint8Array, at: number, rows: number): number {
+  const low = whole[at]! | (whole[at + rows]! << 8) | (whole[at + 2 * rows]! << 16)
+  return (low | (whole[at + 3 * rows]! << 24)) >>> 0
 }
 
 /** Whether two columns hold the same numbers; two that are absent may stand for different things. */

@@ -8,13 +8,15 @@ import type { Change } from '../store'
 import type { CardState } from './card'
 
 export interface Listener {
-  /** `again`: of the scenario that is shown already, in full. */
-  scene(scene: Scene, milliseconds: number, again: boolean): void
+  /** `again`: of the scenario that is shown already, in full; `curves`: with them. */
+  scene(scene: Scene, milliseconds: number, again: boolean, curves: boolean): void
   /** The numbers rest. */
   settled(scene: Scene): void
   failed(error: unknown): void
   busy(is: boolean): void
   card(state: CardState): void
+  /** Are curves looked at? Others can wait until the numbers rest. */
+  readonly curves: boolean
 }
 
 export interface Computing {
@@ -25,19 +27,20 @@ export interface Computing {
 
 /** What is enough for the eye, which sees no billionth of a path, and while a hand moves no more points of it than these. */
 const QUICK = { tolerance: 1e-9 }
-const MOVING = { tolerance: 1e-9, samples: 1500 }
+const MOVING = { ...QUICK, samples: 1500 }
 const REST = 600
 
 interface Asked {
   scenario: Scenario
   /** How little is enough for now; absent: all there is. */
-  enough?: typeof QUICK | typeof MOVING
+  enough?: { tolerance: number; samples?: number; curves?: boolean }
 }
 
 /** Is there more to a scenario than what was computed of it? */
 function coarse({ columns, header }: Scene, { enough }: Asked): boolean {
   if (!enough) return false
-  return header.tolerance >= enough.tolerance || ('samples' in enough && columns.time.length >= enough.samples)
+  const { tolerance, samples = Number.POSITIVE_INFINITY, curves = true } = enough
+  return header.tolerance >= tolerance || columns.time.length >= samples || !curves
 }
 
 export function createComputing(app: App, listener: Listener): Computing {
@@ -49,7 +52,7 @@ export function createComputing(app: App, listener: Listener): Computing {
     done({ scene, milliseconds }, asked) {
       const again = shown?.asked.scenario === asked.scenario
       shown = { scene, asked }
-      listener.scene(scene, milliseconds, again)
+      listener.scene(scene, milliseconds, again, asked.enough?.curves ?? true)
     },
     failed: (error) => {
       shown = undefined
@@ -91,7 +94,7 @@ export function createComputing(app: App, listener: Listener): Computing {
       app.api.cancel('card')
       app.api.cancel('possible')
       listener.card({ state: 'waiting' })
-      runner.ask({ scenario, enough: change?.gesture === undefined ? QUICK : MOVING })
+      runner.ask({ scenario, enough: change?.gesture === undefined ? QUICK : { ...MOVING, curves: listener.curves } })
       later(scenario)
     },
     stop() {

@@ -261,12 +261,12 @@ export function createControls(app: App): Controls {
   }
 
   undo.add(
-    store.subscribe((scenario, { source }) => {
+    store.subscribe((_, { source }) => {
       if (source !== 'control') {
         hand = null
         for (const field of fields) field.limit({ low: null, high: null })
       }
-      update(scenario)
+      queueMicrotask(() => update(store.scenario)) // by then it is on its way to be computed
     }),
   )
   app.parts().then(

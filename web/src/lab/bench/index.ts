@@ -27,6 +27,8 @@ function _mount(host: HTMLElement, app: App): () => void {
   const undo = cleanup()
   const { store, api } = app
   const stage = createStage(app)
+  // First of all who hear of a change: the server computes while the controls follow.
+  undo.add(store.subscribe((scenario, change) => computing.ask(scenario, change)))
   const controls = createControls(app)
   const findings = createFindings(() => void openDerivation(api, store.scenario))
   const curves = createCurves(app.toast, (time) => stage.viewer.seek(time))
@@ -49,7 +51,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   let idle = true
 
   const computing = createComputing(app, {
-    scene(scene, milliseconds, again) {
+    scene(scene, milliseconds, again, withCurves) {
       stage.setScene(scene, { camera: !fresh, time: !fresh && !restart, rests: again })
       if (fresh) sayPace(stage.viewer.suit())
       fresh = false
@@ -61,7 +63,7 @@ function _mount(host: HTMLElement, app: App): () => void {
         stage.took(milliseconds, scene)
         controls.setReach(scene.header.support.rim ?? scene.header.support.size)
         findings.update(scene)
-        curves.update(scene)
+        if (withCurves) curves.update(scene)
         events.update(scene)
         tabs.badge('events', scene.header.events.length ? String(scene.header.events.length) : '', 'count')
         stage.working(!idle)
@@ -86,6 +88,9 @@ function _mount(host: HTMLElement, app: App): () => void {
       card.update(state)
       const { text, kind } = card.badge()
       tabs.badge('card', text, kind)
+    },
+    get curves() {
+      return tabs.shown === 'curves'
     },
   })
 
@@ -202,7 +207,6 @@ function _mount(host: HTMLElement, app: App): () => void {
       if (change.source === 'undo' || change.source === 'redo') fresh = false
       if (change.source === 'nudge') restart = true
       showScenario(scenario)
-      computing.ask(scenario, change)
       linking.changed(scenario)
     }),
     stage.viewer.on('time', ({ time }) => curves.at(time)),
