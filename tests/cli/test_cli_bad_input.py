@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -203,3 +204,21 @@ def test_an_option_of_one_value_is_not_given_two(name: str, capsys: pytest.Captu
 def test_a_switch_may_be_thrown_twice_and_a_list_be_long(trundle: Command) -> None:
     words = ("--plan", "--plan", "-f", "support.tilt", "-f", "body.mass")
     assert trundle("fit", "-s", "cylinder-on-incline", *words).status == 0
+
+
+@pytest.mark.parametrize(
+    ("command", "scenario", "kind"),
+    [
+        ("steady", "ball-on-a-pushed-box", "move"),
+        ("steady", "coin-upright-on-incline", "torque"),
+        ("steady", "cylinder-on-incline", "cylinder"),
+        ("equilibria", "ball-in-a-turning-bowl", "spin"),
+        ("equilibria", "coin-upright-on-incline", "torque"),
+        ("sensitivity", "ball-in-a-trough", "ball on cylinder"),
+        ("twin", "ball-in-a-trough", "cylinder"),
+    ],
+)
+def test_a_part_is_called_what_the_file_calls_it(trundle: Command, command: str, scenario: str, kind: str) -> None:
+    said = trundle(command, scenario).err
+    assert re.search(rf"\b{kind}\b", said)
+    assert not re.search(r"[A-Z]\w*\(|tree=", said), said

@@ -65,7 +65,7 @@ def test_a_later_stage_is_asked_only_of_what_passes_the_earlier() -> None:
     both = ["gravity or a force pulls along the cylinder's axis", "a torque acts on the body"]
     assert CylinderOnCylinder.violations(pipe, start) == both
     assert CylinderOnCylinder.violations(replace(pipe, support=replace(pipe.support, surface=tr.Plane())), start) == [
-        "the surface is a Plane, not a Cylinder"
+        "the surface is a plane, not a cylinder"
     ]
     assert CylinderOnCylinder.violations(across, start) == [
         "the start moves along the cylinder's axis or spins across it"

@@ -213,7 +213,7 @@ def test_a_level_line_is_a_line_of_equal_potential() -> None:
 
 def test_what_has_no_counterpart_is_refused() -> None:
     airy, start = turntable(1, loads=(tr.Drag(0.01, air=2.0),))
-    with pytest.raises(tr.OutOfDomainError, match="Nothing corresponds to this: the load Drag"):
+    with pytest.raises(tr.OutOfDomainError, match="Nothing corresponds to this: the load drag"):
         tr.twin(airy, start)
     lopsided = tr.Body(0.1, tr.Principal(1e-5, 2e-5, 2e-5), tr.Sphere(0.02))
     system = tr.RollingSystem(lopsided, tr.Support(tr.Plane()))

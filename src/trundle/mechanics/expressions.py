@@ -27,7 +27,7 @@ _LARGEST_POWER, _MOST_FACTORS = 20, 8
 _SHOWN = 60  # characters of what is wrong
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Expression:
     """A formula in named variables, SI throughout.
 
@@ -47,6 +47,9 @@ class Expression:
 
     tree: Any
     text: str = field(compare=False)
+
+    def __repr__(self) -> str:
+        return repr(self.text) if self.text else f"Expression({self.tree!r}, '')"
 
     @staticmethod
     def parse(text: str, variables: tuple[str, ...], key: str) -> Expression:

@@ -5,7 +5,7 @@ The tables of scenario files, their JSON schema, the checks and what is written 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cache
 from importlib import import_module
@@ -238,6 +238,23 @@ class Part:
         names = fields_of(type(self))
         for name, value in read_fields(type(self), {name: getattr(self, name) for name in names}).items():
             object.__setattr__(self, name, value)
+
+    @property
+    def word(self) -> str:
+        """What messages call it: its kind, as a file names it, or the name of a class that files do not know."""
+        return self.kind or self.table_of or type(self).__name__
+
+
+def words_of(parts: Iterable[Part]) -> str:
+    """Return what messages call several parts.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> words_of([tr.Drag(0.1), tr.Spin(2.0)])
+    'drag, spin'
+    """
+    return ", ".join(part.word for part in parts)
 
 
 Maker = type[Part] | Callable[..., Any]  # what is called with the fields: the class of a part, or a builder of `Body`

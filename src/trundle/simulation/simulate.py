@@ -210,7 +210,7 @@ def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:
             finite = False
         if not finite:
             remedy = "Start somewhere else, or change its formula."
-            raise InvalidValueError(f"loads[{i}]", "must be finite at the start", load, remedy)
+            raise InvalidValueError(f"loads[{i}]", "must be finite at the start", load.word, remedy)
 
 
 def _check_slip(system: RollingSystem, start: State, contact: Contact) -> None:

@@ -70,7 +70,7 @@ def choose(method: str, system: RollingSystem, start: State) -> str:
         return "exact" if closed_form(system, start) is not None else _numerical(system)
     if method == "taylor" and not system.support.surface.analytic:
         raise OutOfDomainError(
-            f"Taylor's method needs a surface that is a formula; a {type(system.support.surface).__name__} is a table. "
+            f"Taylor's method needs a surface that is a formula; a {system.support.surface.word} is a table. "
             'Use method="runge-kutta".'
         )
     return _numerical(system) if method == "taylor" else method

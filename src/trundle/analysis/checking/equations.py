@@ -183,7 +183,7 @@ def _states(system: RollingSystem, count: int, seed: int) -> States:
     try:
         return states(system, count, seed)
     except (ArithmeticError, ValueError) as error:  # a formula that is not defined all around the axis
-        surface = type(system.support.surface).__name__
+        surface = system.support.surface.word
         remedy = f"On the way to some random states: {error}. Check a trajectory instead."
         raise InvalidValueError("system", "must have a surface that goes on smoothly", surface, remedy) from None
 

@@ -225,7 +225,7 @@ def _gravities(system: RollingSystem) -> Iterator[Suspect]:
 def _terms(system: RollingSystem) -> Iterator[Suspect]:
     """Yield terms that may be forgotten."""
     for i, load in enumerate(system.loads):
-        says = f"A load was left out: {type(load).__name__}."
+        says = f"A load was left out: {load.word}."
         left = partial(laws.without_load, load=load)
         yield Suspect("load-left-out", says, frozenset({f"load {i}"}), left, textbook=True)
     if not system.body.inertia.isotropic:

@@ -155,7 +155,7 @@ def check_covered(system: RollingSystem) -> None:
         raise InvalidValueError(
             "support.motion",
             "must say where the support is at each instant, for a check",
-            type(system.support.motion).__name__,
+            system.support.motion.word,
             f"Its {' and '.join(own)} would have to come with the data, which is not covered.",
         )
 

@@ -13,6 +13,7 @@ from ...errors import InvalidValueError
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import Drag, Load, RollingResistance
 from ...mechanics.motions import Motion, Spin
+from ...mechanics.parts import words_of
 from ...mechanics.system import RollingSystem, State
 from .resisted import ResistedCircle
 
@@ -222,18 +223,18 @@ def _integral(rate: complex, time: float) -> complex:
 def _check(system: RollingSystem) -> None:
     support = system.support
     if not (system.body.is_isotropic_sphere and system.body.shape.axis is None and support.surface.flat):
-        shown = f"{type(system.body.shape).__name__} on {type(support.surface).__name__}"
+        shown = f"{system.body.shape.noun_of(system.body)} on {support.surface.word}"
         raise InvalidValueError("scenario", "must be a ball on a plane", shown)
     if support.motion.coordinates:
         remedy = "Give it a `spin`, an `uneven-spin` or a `wobble`."
         raise InvalidValueError(
-            "support.motion", "must turn the table steadily on the whole", type(support.motion).__name__, remedy
+            "support.motion", "must turn the table steadily on the whole", support.motion.word, remedy
         )
     if not support.motion.mean_rate:
-        raise InvalidValueError("support.motion", "must turn the table", type(support.motion).__name__)
+        raise InvalidValueError("support.motion", "must turn the table", support.motion.word)
     if support.surface.rim is None:
         raise InvalidValueError("support.rim", "must be given", None, 'Write for instance rim = "0.5 m".')
-    others = [type(load).__name__ for load in system.loads if not isinstance(load, (Drag, RollingResistance))]
+    others = [load for load in system.loads if not isinstance(load, (Drag, RollingResistance))]
     if others:
         rule = "must hold drag and rolling resistance only"
-        raise InvalidValueError("loads", rule, ", ".join(others), "Leave the others out.")
+        raise InvalidValueError("loads", rule, words_of(others), "Leave the others out.")

@@ -12,6 +12,7 @@ from ...errors import InvalidValueError
 from ...mechanics import checks
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.nearest import closest_contact
+from ...mechanics.parts import words_of
 from ...mechanics.scalars import is_zero
 from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
@@ -93,7 +94,7 @@ def _check_support(system: RollingSystem) -> None:
             "A body that rests on a moving support moves; where it rides along for ever is a relative equilibrium, "
             "another question. Leave the motion out, or run the scenario."
         )
-        raise InvalidValueError("support.motion", "must be at rest for equilibria", motion, remedy)
+        raise InvalidValueError("support.motion", "must be at rest for equilibria", motion.word, remedy)
 
 
 def _check_steady(system: RollingSystem, time: float, place: Place) -> None:
@@ -105,7 +106,9 @@ def _check_steady(system: RollingSystem, time: float, place: Place) -> None:
             remedy = (
                 "A load that changes with time leaves nothing at rest; give it a constant value, or run the scenario."
             )
-            raise InvalidValueError("loads", "must be the same at all times for equilibria", system.loads, remedy)
+            raise InvalidValueError(
+                "loads", "must be the same at all times for equilibria", words_of(system.loads), remedy
+            )
 
 
 # --- a cylinder: one number -------------------------------------------------------------------------------
@@ -169,7 +172,7 @@ def _check_straight(line: Line) -> None:
         across = (torque - line.axis * torque.dot(line.axis)).norm()
         if across > ACROSS * max(line.scale, 1e-300):
             remedy = f"Here {across:.4g} N m turns it askew. Let it roll down the slope, and push it that way."
-            raise InvalidValueError("loads", "must leave a cylinder in its line", line.system.loads, remedy)
+            raise InvalidValueError("loads", "must leave a cylinder in its line", words_of(line.system.loads), remedy)
 
 
 def _straight_support(line: Line) -> bool:

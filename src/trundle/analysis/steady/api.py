@@ -72,7 +72,8 @@ def steady_motions(
     checks.instance(system, RollingSystem, "system", "Give a tr.RollingSystem or a tr.Scenario.")
     if system.body.shape.axis is not None:
         remedy = "A cylinder that rolls straight is kept upright by its line of contact; ask tr.equilibria of it."
-        raise InvalidValueError("body", "must touch at a point for a steady motion in space", system.body, remedy)
+        noun = system.body.shape.noun_of(system.body)
+        raise InvalidValueError("body", "must touch at a point for a steady motion in space", noun, remedy)
     start = system.place() if start is None else start
     checks.instance(start, State, "start", "Let system.place(...) make it.")
     flow, y = flow_of(system, start)

@@ -9,6 +9,7 @@ import numpy as np
 from ...errors import InvalidValueError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.nearest import closest_contact
+from ...mechanics.parts import words_of
 from ...mechanics.system import RollingSystem, State
 from .flow import Array, Flow, bears_complex_numbers, scale_of
 from .quantities import Held
@@ -53,7 +54,9 @@ def flow_of(system: RollingSystem, start: State) -> tuple[Flow, Array]:
     rate = system.support.motion.steady_rate
     if rate is None:
         remedy = "Let the support rest or turn steadily; or run the scenario."
-        raise InvalidValueError("support.motion", "must be steady for a steady motion", system.support.motion, remedy)
+        raise InvalidValueError(
+            "support.motion", "must be steady for a steady motion", system.support.motion.word, remedy
+        )
     if system.support.friction is not None:
         system = replace(system, support=replace(system.support, friction=None))
     q = Quaternion(*start.orientation)
@@ -66,7 +69,7 @@ def flow_of(system: RollingSystem, start: State) -> tuple[Flow, Array]:
             remedy = (
                 "A load that changes with time, or one that pulls to a side of a turning shape, leaves nothing steady."
             )
-            raise InvalidValueError("loads", "must look the same at all times", system.loads, remedy)
+            raise InvalidValueError("loads", "must look the same at all times", words_of(system.loads), remedy)
     return replace(flow, by_complex_step=bears_complex_numbers(flow, y)), y
 
 

@@ -61,14 +61,14 @@ def on(*surfaces: type[Surface]) -> Condition:
     >>> on(Bowl, Dome).words
     ', on a bowl or dome'
     """
-    *others, last = (surface.__name__ for surface in surfaces)
+    *others, last = (surface.kind for surface in surfaces)
     names = f"{', '.join(others)} or {last}" if others else last
 
     def failures(system: RollingSystem, start: Any) -> Iterable[str]:  # noqa: ARG001
         if not isinstance(system.support.surface, surfaces):
-            yield f"the surface is a {type(system.support.surface).__name__}, not a {names}"
+            yield f"the surface is a {system.support.surface.word}, not a {names}"
 
-    return Condition(f", on a {names.lower()}", failures)
+    return Condition(f", on a {names}", failures)
 
 
 def moving(holds: Callable[[Any], bool], words: str, kind: str) -> Condition:
@@ -76,7 +76,7 @@ def moving(holds: Callable[[Any], bool], words: str, kind: str) -> Condition:
 
     def failures(system: RollingSystem, start: Any) -> Iterable[str]:  # noqa: ARG001
         if not holds(system.support.motion):
-            yield f"the support's motion {type(system.support.motion).__name__} is no {kind}"
+            yield f"the support's motion, {system.support.motion.word}, is no {kind}"
 
     return Condition(words, failures)
 
@@ -90,7 +90,7 @@ def under(words: str, failure: str, *others: type[Load] | Callable[[Load], Any])
     >>> still = under(", under gravity and still air", "not of still air", tr.QuadraticDrag, linear_drag)
     >>> ball, table = tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())
     >>> list(still.failures(tr.RollingSystem(ball, table, (tr.Drag(0.1), tr.Magnus(0.1))), None))
-    ['the load Magnus is not of still air']
+    ['the load magnus is not of still air']
     """
 
     def allowed(load: Load) -> bool:
@@ -98,7 +98,7 @@ def under(words: str, failure: str, *others: type[Load] | Callable[[Load], Any])
         return load.constant or any(kinds)
 
     def failures(system: RollingSystem, start: Any) -> Iterable[str]:  # noqa: ARG001
-        return (f"the load {type(load).__name__} is {failure}" for load in system.loads if not allowed(load))
+        return (f"the load {load.word} is {failure}" for load in system.loads if not allowed(load))
 
     return Condition(words, failures)
 
