@@ -15,6 +15,7 @@ from tests.tolerances import SOLVER
 import trundle as tr
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.invariants import FLIGHT, INVARIANTS, ROLLING, SLIPPING, Record, invariants_of
+from trundle.mechanics.invariants.revolution import _Meridian
 from trundle.mechanics.loads import PivotFriction, RollingCouple
 from trundle.mechanics.symmetry import ball_of, keeps_axis
 from trundle.solve.laws import FlightLaw, RollingLaw, SlippingLaw
@@ -347,6 +348,21 @@ def test_the_pair_deep_in_a_narrow_cone_drifts_by_rounding_of_the_height_alone(s
     late = replace(at, angular_velocity=at.angular_velocity * np.array([1.0, 1.0 + 1e-9])[:, None])
     (figure,) = (figure for figure in drifts(system, late, method) if PAIR in figure.name)
     assert not figure.passed
+
+
+def test_the_pair_is_carried_along_a_short_stretch_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Between two slips of a hundred the contact goes a millimetre: no shorter steps are needed there than on all of it.
+    taken: list[float] = []
+    slopes = _Meridian.slopes
+    monkeypatch.setattr(_Meridian, "slopes", lambda self, s, y: [taken.append(s), slopes(self, s, y)][1])
+    system, counts = system_of(BALL, tr.Cone(0.8)), []
+    for duration in (0.002, 1.0):
+        at = ran(system, duration, position=(0.1, 0.0), velocity=(0.3, 0.2), spin=5.0)
+        assert drift(PAIR, system, at) <= SOLVER(20 * turned(at), 1e-12)
+        counts.append(len(taken))
+        taken.clear()
+    short, long = counts
+    assert 5 * short < long
 
 
 # --- drawn ----------------------------------------------------------------------------------------------
