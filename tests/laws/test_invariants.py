@@ -15,10 +15,13 @@ from tests.tolerances import SOLVER
 import trundle as tr
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.invariants import FLIGHT, INVARIANTS, ROLLING, SLIPPING, Record, invariants_of
+from trundle.mechanics.invariants.revolution import _Meridian
 from trundle.mechanics.loads import PivotFriction, RollingCouple
 from trundle.mechanics.symmetry import ball_of, keeps_axis
 from trundle.solve.laws import FlightLaw, RollingLaw, SlippingLaw
+from trundle.solve.methods import Method
 from trundle.solve.samples import Samples
+from trundle.verify.integrals import drifts
 
 NAMED = {integral.name: integral for integral in INVARIANTS}
 ENERGY, MOVING, SPIN = "energy", "moving energy", "spin about the normal"
@@ -331,6 +334,35 @@ def test_the_pair_in_a_cone_hardly_wider_than_the_ball_is_what_is_known(
     assert run.card()[f"drift of the {PAIR}"].value <= 1e-12
     late = replace(at, angular_velocity=at.angular_velocity * (1 + 1e-11 * at.time)[:, None])
     assert drift(PAIR, system, late) > 1e-12
+
+
+@pytest.mark.parametrize("spin", [0.0, 30.0])
+def test_the_pair_deep_in_a_narrow_cone_drifts_by_rounding_of_the_height_alone(spin: float) -> None:
+    # Δ(aΩ·n) is (V_φ/R) Δz: with R = 2 mm at a height of 1.5 m, a rounding of z is hundreds of one of V_φ.
+    pytest.importorskip("heyoka")
+    system = tr.RollingSystem(tr.Body.hollow_sphere(0.0278, 0.25), tr.Support(tr.Cone(0.0201)))
+    run = tr.simulate(system, system.place((0.0298, 0.0), (0.3, 5.2), spin=spin), 0.1, 0.1, method="taylor")
+    method, at = Method.of("taylor"), run.samples
+    (figure,) = (figure for figure in drifts(system, at, method) if PAIR in figure.name)
+    assert figure.passed
+    late = replace(at, angular_velocity=at.angular_velocity * np.array([1.0, 1.0 + 1e-9])[:, None])
+    (figure,) = (figure for figure in drifts(system, late, method) if PAIR in figure.name)
+    assert not figure.passed
+
+
+def test_the_pair_is_carried_along_a_short_stretch_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Between two slips of a hundred the contact goes a millimetre: no shorter steps are needed there than on all of it.
+    taken: list[float] = []
+    slopes = _Meridian.slopes
+    monkeypatch.setattr(_Meridian, "slopes", lambda self, s, y: [taken.append(s), slopes(self, s, y)][1])
+    system, counts = system_of(BALL, tr.Cone(0.8)), []
+    for duration in (0.002, 1.0):
+        at = ran(system, duration, position=(0.1, 0.0), velocity=(0.3, 0.2), spin=5.0)
+        assert drift(PAIR, system, at) <= SOLVER(20 * turned(at), 1e-12)
+        counts.append(len(taken))
+        taken.clear()
+    short, long = counts
+    assert 5 * short < long
 
 
 # --- drawn ----------------------------------------------------------------------------------------------

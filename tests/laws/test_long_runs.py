@@ -13,6 +13,7 @@ import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
 from trundle.solve import runge_kutta, taylor
+from trundle.solve.patience import Patience
 from trundle.solve.samples import Samples
 
 pytest.importorskip("heyoka")
@@ -171,9 +172,28 @@ def test_a_quaternion_means_the_same_rotation_as_scipys() -> None:
     assert np.allclose([list(row) for row in ours.rows], theirs, rtol=0, atol=EXACT(4, 1))
 
 
+def test_patience_reckons_with_what_a_step_of_a_law_costs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A step for an ellipsoid is the work of several for a ball: as many steps would take several times as long."""
+    taken: list[int] = []
+    after = Patience.after
+    monkeypatch.setattr(
+        Patience, "after", lambda self, steps, *rest: [taken.append(steps), after(self, steps, *rest)][1]
+    )
+    monkeypatch.setattr(taylor, "_PATIENCE", taylor._PATIENCE | {"steps": 1.0, "spare": 5e3})
+    steps = []
+    for body in (tr.Body.solid_sphere(0.02, 0.1), ellipsoid(0.1, 0.02, 0.025, 0.03)):
+        system = tr.RollingSystem(body, tr.Support(tr.Bowl(0.5)))
+        with pytest.raises(tr.SolverError, match="hardly gets on"):
+            taylor.solve(system, system.place((0.1, 0.0), (0.0, 0.3)), np.array([0.0, 1e4]))
+        steps.append(sum(taken))
+        taken.clear()
+    ball, egg = steps
+    assert 3 * egg < ball <= 5.5e3
+
+
 def test_short_steps_where_slip_begins_are_no_reason_to_compile_anything() -> None:
     # Its hundred first steps led over a tenth of a microsecond, and half a minute went into code for the rest.
-    effort = taylor._Effort(cost=700)
+    effort = taylor._Effort(cost=400)
     effort.after(100, 1e-7)
     effort.look(left=1.0)
     assert effort.level == taylor.IN_HASTE
@@ -233,8 +253,8 @@ def test_no_long_law_is_compiled_with_care_for_the_few_steps_to_where_it_ends(
     efforts: list[Any] = []
     effort = taylor.Shared.effort
 
-    def noted(self: taylor.Shared, key: str, cost: int) -> Any:
-        efforts.append(effort(self, key, cost))
+    def noted(self: taylor.Shared, *law: Any) -> Any:
+        efforts.append(effort(self, *law))
         return efforts[-1]
 
     monkeypatch.setattr(taylor.Shared, "effort", noted)

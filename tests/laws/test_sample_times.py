@@ -187,7 +187,9 @@ def test_what_follows_its_events_is_worked_out_once_however_often_a_run_is_looke
 @pytest.mark.parametrize("share", [2.0, 0.9, 0.5])  # of its steps that are kept
 def test_a_stretch_of_more_steps_than_are_kept_is_gone_through_once_too(share, monkeypatch):
     taken, after = [], Patience.after
-    monkeypatch.setattr(Patience, "after", lambda self, steps, time: [taken.append(steps), after(self, steps, time)][1])
+    monkeypatch.setattr(
+        Patience, "after", lambda self, steps, *rest: [taken.append(steps), after(self, steps, *rest)][1]
+    )
     system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.Spin(3.0)))
     start, times = system.place((0.2, 0.0), (0.0, 0.3), spin=400.0), np.array([0.0, 2.0])
     Method.of("runge-kutta").solve(system, start, times)

@@ -137,7 +137,7 @@ def test_slip_and_grip_by_turns_count_the_steps_of_both() -> None:
 
 def test_no_law_is_unrolled_for_steps_that_patience_would_not_see() -> None:
     """Unrolling takes as long as the square of a law's cost and more: minutes for 1200, as of a disc in a cone."""
-    for cost, level in ((700, integrators.UNROLLED), (800, integrators.WITH_CARE), (5000, integrators.WITH_CARE)):
+    for cost, level in ((400, integrators.UNROLLED), (500, integrators.WITH_CARE), (5000, integrators.WITH_CARE)):
         effort = taylor._Effort(cost=cost)
         effort.after(500_000, 1e-3)
         effort.look(1.0)

@@ -1,4 +1,4 @@
-"""How many steps a run may take, and how many more where it hardly gets on: then no run goes on for hours."""
+"""How much work a run may take, and how much more where it hardly gets on: then no run goes on for hours."""
 
 from __future__ import annotations
 
@@ -51,10 +51,13 @@ class Patience:
         self.name, self.error = name, error
         self.owed = 0.0  # steps taken beyond the even ones
 
-    def after(self, steps: int, time: float) -> None:
-        """Take account of steps up to a time; refuse to go on where they are too many."""
+    def after(self, steps: int, time: float, each: float = 1.0) -> None:
+        """Take account of steps up to a time, each so many times the work of a usual one; refuse where it is too much.
+
+        Work is counted, never timed, so that a run ends alike on any machine.
+        """
         gone, self.time = max(time - self.time, 0.0), max(time, self.time)  # a step may be taken again, shorter
-        counted = steps * (_DEARER if gone < steps * self.nowhere else 1)
+        counted = steps * each * (_DEARER if gone < steps * self.nowhere else 1)
         self.owed = max(0.0, self.owed + counted - gone * self.pace)
         if self.owed > self.spare:
             raise self.error(

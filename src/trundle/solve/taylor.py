@@ -44,8 +44,11 @@ _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.
 # takes a minute, and where slip begins steps are a thousand times shorter than they will be.
 _WORTH_UNROLLING, _DONE = 4000.0, 0.01
 _SHORT_LAW = 100  # by `Lowered.cost`
-_HASTE, _OF_ANY_STEP = 3.0, 3e4  # how many times slower that code is; products that take as long as what is not the law
-_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
+_SLOWER = {IN_HASTE: 3.0, WITH_CARE: 1.0, UNROLLED: 0.5}  # times, than what is made with care
+_OF_ANY_STEP = 3e4  # products that take as long as what is not the law
+# A minute, and some seconds, in steps of a law as short as those that are compiled with care at once.
+_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 1e5, "name": "Taylor's method"}
+_OF_A_SHORT_STEP = 5e4  # products
 _STRAIGHT, _YOUNG, GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 LONGEST = 100.0  # s without a new reference of time, at most
 _PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
@@ -129,6 +132,7 @@ class _Effort:
     """What is done for the speed of a law's steps in one run, by what they have shown so far."""
 
     cost: int  # of the law
+    tolerance: float = TOLERANCE  # of a step
     level: int = IN_HASTE
     steps: int = 0
     pace: float = 0.0  # 1/s, of the last of them
@@ -137,6 +141,16 @@ class _Effort:
     def __post_init__(self) -> None:
         if self.cost <= _SHORT_LAW:
             self.level = WITH_CARE
+
+    @property
+    def of_the_law(self) -> float:
+        """How many products the law takes in a step: a coefficient of order n is a sum of n for each operation."""
+        order = math.ceil(1 - math.log(self.tolerance) / 2)
+        return self.cost * order * (order + 3) / 2
+
+    def products(self, level: int) -> float:
+        """Return how many products of code that is made with care take as long as a step of code of a level."""
+        return _OF_ANY_STEP + _SLOWER[level] * self.of_the_law
 
     @property
     def settled(self) -> bool:
@@ -155,7 +169,7 @@ class _Effort:
         of them is to be done first; but where there have been as many as are worth it, there may be as many again.
         """
         self.pause = _FIRST_LOOK if growing else _NEXT_LOOK
-        coming, most = self.pace * left, _PATIENCE["steps"]
+        coming, most = self.pace * left, _PATIENCE["steps"] * _OF_A_SHORT_STEP / self.products(UNROLLED)
         careful, worth = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost, _WORTH_UNROLLING * self.cost
         if min(coming, most) > worth and self.steps > _DONE * worth:
             self.level = UNROLLED
@@ -179,13 +193,13 @@ class Shared:
             self._patience, self.end = Patience(begin, end, **_PATIENCE), end
         return self._patience
 
-    def effort(self, key: str, cost: int) -> _Effort:
+    def effort(self, key: str, cost: int, tolerance: float) -> _Effort:
         """Return what is done for a law."""
-        return self.efforts.setdefault(key, _Effort(cost))
+        return self.efforts.setdefault(key, _Effort(cost, tolerance))
 
     def another(self) -> Shared:
         """Return the same for another run of this system: for it, too, is there what was made with care."""
-        return Shared({key: _Effort(one.cost, one.level) for key, one in self.efforts.items()})
+        return Shared({key: _Effort(one.cost, one.tolerance, one.level) for key, one in self.efforts.items()})
 
 
 def first_steps(
@@ -195,7 +209,7 @@ def first_steps(
     with _begun(system, now, end, tolerance, Shared()) as run:
         _, _, _, taken, *_ = run.integrator.propagate_until(end - now.time, max_steps=count)
         gone = float(run.integrator.time)
-        return gone / max(taken, 1), run.products(tolerance), run.lowered.event_functions
+        return gone / max(taken, 1), run.effort.of_the_law, run.lowered.event_functions
 
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
@@ -266,10 +280,10 @@ def _dense_in_chart(
                 stop = run.stop(reached)
             elif kept.steps > most and until < end:
                 (there,) = to_law(np.array([until]), run.integrator.state[None].copy())
-                return TooMany(states, kept.steps, run.work(tolerance, kept.steps), kept.when, until, there)
+                return TooMany(states, kept.steps, run.work(kept.steps), kept.when, until, there)
             else:
                 run.tidy(until)
-        return Leg(states, stop, kept.steps, run.work(tolerance, kept.steps), kept.when)
+        return Leg(states, stop, kept.steps, run.work(kept.steps), kept.when)
 
 
 @contextlib.contextmanager
@@ -282,7 +296,7 @@ def _begun(system: RollingSystem, now: PhaseStart, end: float, tolerance: float,
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
-        run = _Run(borrow, shared.effort(key, lowered.cost), system, lowered, given, now)
+        run = _Run(borrow, shared.effort(key, lowered.cost, tolerance), system, lowered, given, now)
         run.patience, run.end, run.lasted = shared.patience(now.time, end), shared.end, lasted(system, now)
         yield run
 
@@ -345,15 +359,9 @@ class _Run:
         (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
         return ZeroCrossing(self.time, self.lowered.event_functions[reached], state)
 
-    def products(self, tolerance: float) -> float:
-        """Return how many products a step takes: a coefficient of order n is a sum of n for each operation."""
-        order = math.ceil(1 - math.log(tolerance) / 2)
-        return self.lowered.cost * order * (order + 3) / 2
-
-    def work(self, tolerance: float, steps: int) -> float:
-        """Return how much work so many steps are, in products of code that is made with care."""
-        slower = _HASTE if self.level == IN_HASTE else 1.0
-        return steps * (_OF_ANY_STEP + slower * self.products(tolerance))
+    def work(self, steps: int) -> float:
+        """Return how much work so many steps are, products of code that is made with care."""
+        return steps * self.effort.products(self.level)
 
     def tidy(self, time: float) -> None:
         """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""
@@ -421,7 +429,7 @@ class _Run:
             return False
         if self.integrator.last_h == 0:  # the terms of the series are greater than any float
             steps = int(_PATIENCE["steps"])
-        self.patience.after(steps, now)
+        self.patience.after(steps, now, self.effort.products(self.level) / _OF_A_SHORT_STEP)
         if self.progress is not None:
             self.progress(now)
         return True

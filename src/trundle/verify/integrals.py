@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Vector
-from ..mechanics.invariants import Record, invariants_of
+from ..mechanics.invariants import Invariant, Record, invariants_of
 from ..mechanics.system import RollingSystem
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
-from .bounds import EXACT, Array, before_a_singular_end, bound_of, largest, speed_of, turned_in
+from .bounds import EXACT, Array, before_a_singular_end, bound_of, largest, pace_of, speed_of, turned_in
 from .card import CardFigure, checked
 
-_ROUNDING = 3e-16  # of a speed
+_ROUNDING = 3e-16  # of a speed, or of a coordinate
+_NUDGE = 1e-8  # of a coordinate, by which it is moved to see how far its rounding shows
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
 
 
@@ -34,11 +35,12 @@ def drifts(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardF
             terms, sizes = integral.sized_terms(system, record)
             if not terms:  # it has nothing to say of this stretch
                 continue
-            total = sum(_as_array(term, part.time.size) for term in terms)
+            total = _sum_of(terms, part.time.size)
             drift = drift_of(total, sizes)
             if drift > bound:
                 stirred = integral.sized_terms(system, _stirred(system, part, record))[1]
-                drift = min(drift, drift_of(total, stirred))
+                by_place = _shown_of_place(system, part, record, integral, total)
+                drift = min(drift, drift_of(total, [*stirred, by_place / bound]))
             known = worst.get(integral.name, (0.0, integral, set()))
             worst[integral.name] = max(known[0], drift), integral, known[2] | {phase}
     for name, (drift, integral, held) in worst.items():
@@ -63,6 +65,25 @@ def _stirred(system: RollingSystem, at: Samples, record: Record) -> Record:
     return replace(record, motion=moved)
 
 
+def _shown_of_place(system: RollingSystem, at: Samples, record: Record, integral: Invariant, total: Array) -> float:
+    """Return by how much rounding of the place may move a first integral between a stretch's first instant and another.
+
+    A coordinate is rounded as a share of itself, about once a radian of the fastest rotation, and how far it shows the
+    integral itself tells: deep in a narrow funnel a ball goes round the axis at a small share of its height, and the
+    height that it carries its spin along is the small difference of two.
+    """
+    moved = np.zeros(3)
+    for i, direction in enumerate(np.eye(3)):
+        steps = _NUDGE * np.abs(at.contact[:, i])
+        steps[0] = 0.0
+        shift = Vector.of(steps[:, None] * direction)
+        motion = replace(record.motion, position=record.motion.position + shift)
+        terms = integral.terms(system, replace(record, motion=motion, contact=record.contact + shift))
+        moved[i] = np.abs(_sum_of(terms, at.time.size) - total).max() if terms else 0.0
+    turns = pace_of(system, at) * float(np.ptp(at.time))
+    return _ROUNDING / _NUDGE * math.sqrt(max(1.0, turns)) * float(moved.sum())
+
+
 def _runs_of_a_phase(at: Samples) -> Iterator[tuple[Samples, str]]:
     """Return the samples between events, with the phase of each part by its name."""
     names = {ROLLING: "rolling", SLIPPING: "slipping", FLIGHT: "flight"}
@@ -70,6 +91,10 @@ def _runs_of_a_phase(at: Samples) -> Iterator[tuple[Samples, str]]:
     for index in np.split(np.arange(at.time.size), np.searchsorted(at.time, changes)):
         if index.size > 1 and int(at.phase[index[0]]) in names:
             yield at.part(index), names[int(at.phase[index[0]])]
+
+
+def _sum_of(terms: list[Any], count: int) -> Array:
+    return np.sum([_as_array(term, count) for term in terms], axis=0)
 
 
 def _as_array(term: Any, count: int) -> Array:

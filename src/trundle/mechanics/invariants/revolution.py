@@ -24,7 +24,7 @@ from .base import ROLLING, Invariant, Record
 _NEAREST = 1e-4  # that the centre may come to the axis, as a share of its largest distance from it
 _ON_AXIS = 1e-100  # of the radius: nearer, the squares of what is worked out vanish
 _TOLERANCE = 1e-13
-_STEPS = 48  # of the meridian's stretch at least: its dense output is then as good as its steps
+_STEPS = 48  # of the meridian's stretch, or of R where that is longer: its dense output is then as good as its steps
 _BESIDE = 1e-13  # of a contact's distance from the origin, from the surface: rounding
 _BEGIN = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)  # way from the start, solutions by rows, the one that starts at zero
 _WIDER = 8  # times that the stretch is widened, each time to twice what it was
@@ -110,7 +110,7 @@ class _Meridian:
             method="DOP853",
             rtol=_TOLERANCE,
             atol=1e-3 * _TOLERANCE,
-            max_step=abs(end) / _STEPS,
+            max_step=max(abs(end), 2 * self.least) / _STEPS,
             dense_output=True,
             events=near_axis,
         )
