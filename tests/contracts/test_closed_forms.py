@@ -129,13 +129,13 @@ class TestCylinderOnCylinder(ClosedFormContract):
         eccentric = replace(BALL, shape=Sphere(0.025, Vector(0.0, 0.0, 0.001)))
         still = replace(start, position=(0.475, 0.0, 0.25), velocity=(0.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
         return [
-            (swung, swung.place((0.7, 0.25)), "UnevenSpin"),
+            (swung, swung.place((0.7, 0.25)), "motion, uneven-spin, is"),
             (replace(inside, support=replace(inside.support, surface=Ball(0.5, 1.0))), top, "Ball"),
             (replace(inside, body=eccentric), still, "about its centre"),
             (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
-            (replace(inside, loads=(tr.Drag(0.1),)), start, "Drag"),
+            (replace(inside, loads=(tr.Drag(0.1),)), start, "load drag is"),
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
-            (replace(inside, loads=(tr.Force(("t", 0.0, 0.0)),)), start, "Force"),
+            (replace(inside, loads=(tr.Force(("t", 0.0, 0.0)),)), start, "load force is"),
         ]
 
     @pytest.mark.parametrize(

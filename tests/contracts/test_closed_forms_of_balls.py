@@ -58,9 +58,9 @@ class TestBallInUprightCylinder(InCylinder):
         inside, start = in_pipe(BALL, tilt=0.0)
         wall = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
         return [
-            (wall, wall.place((0.7, 0.25)), "UnevenSpin"),
+            (wall, wall.place((0.7, 0.25)), "motion, uneven-spin, is"),
             (replace(inside, body=replace(BALL, shape=Sphere(0.025, Vector(0.0, 0.0, 0.001)))), start, "about its"),
-            (replace(inside, loads=(tr.Drag(0.1),)), start, "Drag"),
+            (replace(inside, loads=(tr.Drag(0.1),)), start, "load drag is"),
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
         ]
 
@@ -93,7 +93,7 @@ class TestBallInLeaningCylinder(InCylinder):
         inside, start = in_pipe(BALL, tilt="60 deg")
         swung = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
         return [
-            (swung, swung.place((0.7, 0.25)), "UnevenSpin"),
+            (swung, swung.place((0.7, 0.25)), "motion, uneven-spin, is"),
             (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
         ]
@@ -149,7 +149,7 @@ class TestSphereInMovingAir(OnPlane):
         tumbling = replace(inside, support=replace(inside.support, motion=TUMBLE))
         return [
             (tumbling, tumbling.place((0.1, -0.05)), "Tumble"),
-            (replace(inside, loads=(tr.QuadraticDrag(0.01),)), start, "QuadraticDrag"),
+            (replace(inside, loads=(tr.QuadraticDrag(0.01),)), start, "load quadratic-drag is"),
             (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
         ]
 
@@ -174,7 +174,7 @@ class TestSphereComingToRest(OnPlane):
             (*turning, "support moves"),
             (*on_plane(tilt=0.1, loads=(tr.RollingResistance(1e-4),)), "pushes along"),
             (replace(inside, loads=(tr.QuadraticDrag(0.1, 2.0),)), start, "air moves"),
-            (replace(inside, loads=(tr.PivotFriction(1e-5), tr.RollingResistance(1e-4))), start, "PivotFriction"),
+            (replace(inside, loads=(tr.PivotFriction(1e-5), tr.RollingResistance(1e-4))), start, "load pivot-friction"),
         ]
 
 
@@ -207,8 +207,8 @@ class TestSphereOnUnsteadyPlane(OnPlane):
         inside, start = self.cases()[0]
         others = [replace(inside, support=replace(inside.support, motion=m)) for m in (TUMBLE, tr.Wobble(2.0, 0.1))]
         return [
-            *((other, other.place((0.1, -0.05)), type(other.support.motion).__name__) for other in others),
-            (replace(inside, loads=(tr.Drag(0.1, 1.0),)), start, "Drag"),
+            *((other, other.place((0.1, -0.05)), other.support.motion.word) for other in others),
+            (replace(inside, loads=(tr.Drag(0.1, 1.0),)), start, "load drag is"),
             (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
         ]
 

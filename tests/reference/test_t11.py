@@ -57,11 +57,11 @@ class TestSlidingSphere(ClosedFormContract):
         pipe = tr.RollingSystem(BALL, tr.Support(tr.Cylinder(0.5), tilt="90 deg", friction=0.01))
         return [
             (*on_cloth(motion=tr.Spin(2.0)), "the plane turns"),
-            (*on_cloth(motion=tr.UnevenSpin(2.0, 0.1, 1.0)), "UnevenSpin"),
-            (*on_cloth(loads=(tr.Drag(0.1),)), "Drag"),
+            (*on_cloth(motion=tr.UnevenSpin(2.0, 0.1, 1.0)), "motion, uneven-spin, is"),
+            (*on_cloth(loads=(tr.Drag(0.1),)), "load drag is"),
             (*on_cloth(loads=(tr.Torque((0.0, 0.0, 0.1)),)), "torque"),
             (*on_cloth(oblong), "isotropic inertia"),
-            (pipe, pipe.place((1.0, 0.0), (1.0, 0.0), angular_velocity=(0.0, 0.0, 3.0)), "Cylinder"),
+            (pipe, pipe.place((1.0, 0.0), (1.0, 0.0), angular_velocity=(0.0, 0.0, 3.0)), "surface is a cylinder"),
         ]
 
     def test_it_repeats_after_its_period(self) -> None:
@@ -248,7 +248,7 @@ class TestFlight:
 
     def test_what_lies_outside_is_named(self) -> None:
         system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), loads=(tr.Drag(0.1),))
-        with pytest.raises(OutOfDomainError, match="Drag"):
+        with pytest.raises(OutOfDomainError, match="load drag is"):
             exactly(system, system.place(height=0.2))
 
 

@@ -55,7 +55,7 @@ class TestSphereOnSphere(ClosedFormContract):
             (inside, inside.place((0.5, 0.0), (0.0, 1.0)), "out of the plane"),
             (inside, inside.place((0.5, 0.0), (1.0, 0.0), spin=2.0), "spins about the normal"),
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
-            (replace(inside, loads=(tr.Drag(0.1),)), start, "Drag"),
+            (replace(inside, loads=(tr.Drag(0.1),)), start, "load drag is"),
         ]
 
     def test_it_begins_at_the_start(self) -> None:

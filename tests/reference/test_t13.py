@@ -63,9 +63,9 @@ class TestSphereOnFreePlane(ClosedFormContract):
         return [
             (*on_table(tilt=0.1), "pushes along the plane"),
             (*on_table(bearing=0.1), "bearing torque"),
-            (*on_table(loads=(tr.Drag(0.1),)), "Drag"),
+            (*on_table(loads=(tr.Drag(0.1),)), "load drag is"),
             (*on_table(tr.Body(0.065, tr.Principal(1e-5, 2e-5, 2.5e-5), BALL.shape)), "isotropic inertia"),
-            (*on_table(surface=tr.Bowl(2.0)), "Bowl"),
+            (*on_table(surface=tr.Bowl(2.0)), "surface is a bowl"),
         ]
 
     @precisely

@@ -94,7 +94,7 @@ class TestChaplyginBall(ClosedFormContract):
             (off, off.place((0.1, 0.0), (0.3, 0.2)), "centre of mass at its centre"),
             (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
-            (bowl, bowl.place((0.1, 0.0), (0.3, 0.2)), "Bowl"),
+            (bowl, bowl.place((0.1, 0.0), (0.3, 0.2)), "surface is a bowl"),
         ]
 
     def _obeys(self, system: tr.RollingSystem, start: tr.State, t: Any) -> None:
