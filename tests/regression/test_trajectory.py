@@ -527,3 +527,18 @@ def test_each_copy_of_a_run_is_labelled_by_itself(method: str) -> None:
         assert other.data.identical(run(method).data)
     with pytest.raises(tr.UnknownNameError, match="attribute of a Trajectory"):
         _ = found.dataset
+
+
+def test_other_instants_are_found_without_a_dataset(method: str) -> None:
+    found = run(method)
+    times = 0.5 * (found.samples.time[:-1] + found.samples.time[1:])
+    at = found.at(times)
+    assert "data" not in vars(found)
+    assert "data" not in vars(at)
+    assert np.array_equal(at.samples.time, times)
+    assert at.events == found.events
+    assert at.data.identical(run(method).at(times).data)
+
+
+def test_a_formula_shows_itself_as_it_was_written() -> None:
+    assert repr(tr.Move(("0.5*t**2", 0.0, 0.0))) == "Move(position=Vector(x='0.5*t**2', y=0.0, z=0.0))"
