@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from playwright.sync_api import expect
+from playwright.sync_api import Response, expect
 
 import trundle as tr
+from trundle.views.scene import unpack
 
-from .bench import Bench, eventually
+from .bench import Bench, eventually, linked
 from .visiting import Visitor
 
 NAME = "level-turntable-nudged"
@@ -226,6 +227,39 @@ def test_what_cannot_be_nudged_says_why(visitor: Visitor) -> None:
     bench = Bench(visitor.open("#/bench?name=coin-rolling-upright", drawn=False))
     bench.page.get_by_role("radio", name="Nudge it").click()
     expect(bench.page.get_by_text("Nudging is for balls whose centre of mass is in the middle.")).to_be_visible()
+
+
+def test_a_body_that_only_grows_is_not_sent_again(visitor: Visitor) -> None:
+    page = visitor.open("#/bench?name=ball-in-a-trough")
+    bench, answers = Bench(page), list[Response]()
+    before = at_rest(bench)
+    page.on("response", lambda one: answers.append(one) if one.url.endswith("/api/simulate") else None)
+    bench.slide("body.radius", 0.9)
+    eventually(page, lambda: _in_full(answers))
+    scenes = [unpack(answer.body()) for answer in answers]
+    assert len({scene.header["body"]["radius"] for scene in scenes}) > 1
+    assert not any("body_vertices" in scene.columns for scene in scenes)
+    grown, link = at_rest(bench), linked(bench.scenario())
+    assert share(before, grown) > 0.02
+    whole = Bench(visitor.open(link))
+    assert share(at_rest(whole), grown) < 0.001, "it looks otherwise than one that was sent whole"
+
+
+def _in_full(answers: list[Response]) -> None:
+    assert answers
+    assert "tolerance" not in answers[-1].request.post_data_json
+
+
+def at_rest(bench: Bench) -> np.ndarray:
+    """The middle of the picture once it is drawn in full, from the place that the camera is put at."""
+
+    def sharp() -> None:
+        assert bench.stage.sharpness() == "1"
+
+    bench.settle()
+    from_the_start(bench)
+    eventually(bench.page, sharp)
+    return bench.stage.middle()
 
 
 def test_the_view_turns_comes_near_and_is_put_back(bench: Bench) -> None:

@@ -2,12 +2,14 @@
 
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import trundle as tr
 from trundle.views.scene import Scene, pack, scene_of, unpack
+from trundle.views.scene.body_mesh import body_mesh
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +49,36 @@ def test_the_bytes_are_laid_out_as_the_viewer_reads_them(scene):
             back.append(b"".join((number % 256**size).to_bytes(size, "little") for number in numbers))
         assert b"".join(back) == bytes(2 * side) + written
     assert header["columns"]["time"] == {"dtype": "float64", "shape": [201], "offset": 0, "unit": "s"}
+
+
+def test_meshes_that_are_known_are_named_and_left_out(scene):
+    meshes = {part: {name for name in scene.columns if name.startswith(part)} for part in ("body_", "support_")}
+    moving = {"support_position", "support_orientation"}
+    assert "meshes" not in unpack(pack(scene)).header
+    named = unpack(pack(scene, ()))
+    assert set(named.columns) == set(scene.columns)
+    body, support = (named.header["meshes"][whose] for whose in ("body", "support"))
+    assert body["size"] == pytest.approx(scene.header["body"]["radius"], rel=1e-12)
+    assert set(scene.columns) - set(unpack(pack(scene, [body["name"]])).columns) == meshes["body_"]
+    both = unpack(pack(scene, [support["name"], "nobody's", body["name"]]))
+    assert set(scene.columns) - set(both.columns) == meshes["body_"] | meshes["support_"] - moving
+    assert both.header["meshes"] == named.header["meshes"]
+    for name, column in both.columns.items():
+        assert np.array_equal(column, scene.columns[name])
+
+
+def test_only_size_may_differ_under_the_name_of_a_mesh():
+    small, large = body_mesh(tr.Body.solid_sphere(0.0113, 1.0)), body_mesh(tr.Body.hollow_sphere(7.7, 3.0))
+    assert small.name == large.name
+    assert np.allclose(small.vertices * (large.size / small.size), large.vertices, rtol=0, atol=1e-5 * large.size)
+    egg = body_mesh(tr.Body.ellipsoid((0.3, 0.2, 0.1), mass=1.0))
+    twice = body_mesh(tr.Body.ellipsoid((0.6, 0.4, 0.2), mass=5.0))
+    longer = body_mesh(tr.Body.ellipsoid((0.3001, 0.2, 0.1), mass=1.0))
+    assert egg.name == twice.name
+    assert len({small.name, egg.name, longer.name, replace(egg, paint=-egg.paint).name}) == 4
+    assert replace(egg, triangles=egg.triangles[1:]).name != egg.name
+    turned = replace(egg, normals=egg.normals[:, ::-1])
+    assert turned.name != egg.name
 
 
 def test_a_column_may_be_empty_or_lie_otherwise_in_memory():

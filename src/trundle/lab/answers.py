@@ -93,8 +93,9 @@ def simulate(
     card: bool = False,
     tolerance: float | None = None,
     curves: bool = True,
+    known: list[str] | None = None,
 ) -> Answer:
-    """Run a scenario and pack what a viewer needs.
+    """Run a scenario and pack what a viewer needs, without the meshes that it says it has.
 
     Examples
     --------
@@ -103,7 +104,7 @@ def simulate(
     """
     from ..views.scene import pack
 
-    return Answer(pack(scene_from(data, samples, card, tolerance, curves)), SCENE)
+    return Answer(pack(scene_from(data, samples, card, tolerance, curves), known), SCENE)
 
 
 def scene_from(

@@ -130,7 +130,7 @@ def _asking(app: FastAPI, lab: Lab) -> None:
 
     @app.post("/api/simulate", **described("Run a scenario: a packed scene.", scene=True))
     async def simulate(request: Request, asked: ToSimulate) -> Response:
-        wanted = asked.samples, asked.card, asked.tolerance, asked.curves
+        wanted = asked.samples, asked.card, asked.tolerance, asked.curves, asked.known
         return await lab.answer(request, answers.simulate, asked.scenario, *wanted, slow=asked.card)
 
     @app.post("/api/card", **described("The verification card of a run, in full precision."))

@@ -66,11 +66,17 @@ class ToDraw(AboutScenario):
     card: bool = Field(default=False, description="Whether to verify the run, which takes seconds.")
 
 
+_MeshName = Annotated[str, Field(max_length=64)]
+
+
 class ToSimulate(ToDraw):
     """A scenario to be run and drawn."""
 
     tolerance: Tolerance = None
     curves: bool = Field(default=True, description="Whether to send what may be drawn over time, a third of a scene.")
+    known: Annotated[list[_MeshName], Field(max_length=64)] | None = Field(
+        default=None, description="Names of meshes that came before: they are not sent again, in whatever size."
+    )
 
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]

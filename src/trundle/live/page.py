@@ -145,11 +145,11 @@ Picture = Callable[[RollingSystem], dict[str, Any]]
 
 
 def _body(system: RollingSystem) -> dict[str, Any]:
-    return body_mesh(system.body).columns("body", "body_pattern")
+    return body_mesh(system.body).columns("body")
 
 
 def _support(places: Any, radius: float) -> Picture:
-    return lambda system: ground_under(system, places, radius).mesh.columns("support", "support_marks")
+    return lambda system: ground_under(system, places, radius).mesh.columns("support")
 
 
 def _variants(

@@ -4,6 +4,7 @@ import { t } from '../languages/translate'
 import type { Scene, Triple, Turn } from '../viewer/scene'
 import { unpack } from '../viewer/scene'
 import { createLanes } from './lanes'
+import { createMeshes } from './meshes'
 import type { Found } from './notebook'
 import type { Parts } from './parts'
 import type { Json, Quantity, Scenario, Table } from './scenario'
@@ -122,6 +123,8 @@ export interface RunOptions extends SimulateOptions {
   tolerance?: number
   /** False where nothing is drawn over time: a third less is sent. */
   curves?: boolean
+  /** A scene that is shown: the meshes that it has are not sent again. */
+  like?: Scene | undefined
 }
 
 export interface RollRequest {
@@ -432,6 +435,7 @@ function fileName(response: Response, fallback: string): string {
 
 export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(input, init)): Api {
   const lanes = createLanes()
+  const meshes = createMeshes()
 
   async function request<T>(
     path: string,
@@ -476,11 +480,17 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
 
   const json = <T>(response: Response) => response.json() as Promise<T>
 
-  function packed(path: string, body: object, options: SimulateOptions, own: string): Promise<Simulated> {
+  function packed(
+    path: string,
+    body: object,
+    options: SimulateOptions,
+    own: string,
+    complete: (scene: Scene) => Scene = (scene) => scene,
+  ): Promise<Simulated> {
     const began = performance.now()
     const { samples, card } = options
     return post(path, { ...body, samples, card }, options, own, async (response) => {
-      const scene = unpack(await response.arrayBuffer())
+      const scene = complete(unpack(await response.arrayBuffer()))
       return { scene, milliseconds: performance.now() - began }
     })
   }
@@ -540,8 +550,11 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
       packed(`/api/challenges/${name}/run`, { values, body }, options, 'challenge'),
     judged: (name, values, answer, options = {}) =>
       post(`/api/challenges/${name}/answer`, { values, answer }, options, 'judge', json<Judgement>),
-    simulate: (scenario, { tolerance, curves, ...options } = {}) =>
-      packed('/api/simulate', { scenario, tolerance, curves }, options, 'simulate'),
+    simulate: (scenario, { tolerance, curves, like, ...options } = {}) => {
+      const here = meshes.of(like)
+      const asked = { scenario, tolerance, curves, known: [...here.keys()] }
+      return packed('/api/simulate', asked, options, 'simulate', (scene) => meshes.completed(scene, here))
+    },
     card: (scenario, options = {}) => post('/api/card', { scenario }, options, 'card', json<Card>),
     derivation: (scenario, options = {}) =>
       post('/api/derivation', { scenario }, options, 'derivation', json<Derivation>),

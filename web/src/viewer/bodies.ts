@@ -51,9 +51,16 @@ export class BodyModel {
     this.track = new Track(scene)
     this.pin?.group.scale.setScalar(this.radius)
     this.paint.plain.value = scene.header.body.kind === 'charge' ? 1 : 0
-    if (sameNumbers(before.body_vertices, scene.columns.body_vertices)) return
-    this.mesh.geometry.dispose()
-    this.mesh.geometry = bodyGeometry(scene)
+    const { body_vertices: vertices, body_normals: normals, body_triangles: triangles } = scene.columns
+    if (sameNumbers(before.body_vertices, vertices)) return
+    if (vertices && normals === before.body_normals && triangles === before.body_triangles) {
+      const place = this.mesh.geometry.getAttribute('position') as BufferAttribute // only larger: the rest is there
+      place.copyArray(vertices).needsUpdate = true
+      this.mesh.geometry.computeBoundingSphere()
+    } else {
+      this.mesh.geometry.dispose()
+      this.mesh.geometry = bodyGeometry(scene)
+    }
     measure(this.mesh.geometry, this.paint)
   }
 
@@ -121,7 +128,7 @@ function bodyGeometry({ header, columns }: Scene): BufferGeometry {
     return ball.setAttribute('pattern', ball.getAttribute('normal').clone())
   }
   const geometry = new BufferGeometry()
-  geometry.setAttribute('position', new BufferAttribute(columns.body_vertices, 3))
+  geometry.setAttribute('position', new BufferAttribute(columns.body_vertices.slice(), 3)) // to be written over
   geometry.setAttribute('normal', new BufferAttribute(columns.body_normals, 3))
   geometry.setAttribute('pattern', new BufferAttribute(columns.body_pattern ?? columns.body_normals, 3))
   return geometry.setIndex(new BufferAttribute(columns.body_triangles, 1))

@@ -30,6 +30,7 @@ test.each([
   ['a body moves', () => body.position.setX(1)],
   ['what carries it turns', () => turned.rotateZ(1)],
   ['it takes another shape', () => Object.assign(body, { geometry: new BoxGeometry() })],
+  ['it grows', () => Object.assign(body.geometry.getAttribute('position'), { needsUpdate: true })],
   ['it vanishes', () => Object.assign(body, { visible: false })],
   ['all is forgotten', () => watch.forget()],
   ['the light moves', () => light.position.setX(light.position.x + 3)],

@@ -1,5 +1,5 @@
 /** Whether shadows fall otherwise than when they were last asked about: to work them out again draws every body once more. */
-import type { DirectionalLight, Mesh, Object3D } from 'three'
+import type { BufferAttribute, DirectionalLight, Mesh, Object3D } from 'three'
 
 export class ShadowWatch {
   private known: number[] = []
@@ -9,7 +9,10 @@ export class ShadowWatch {
     scene.updateMatrixWorld()
     const now = [...light.matrixWorld.elements, ...light.target.matrixWorld.elements]
     scene.traverseVisible((part) => {
-      if (part.castShadow && part !== light) now.push((part as Mesh).geometry.id, ...part.matrixWorld.elements)
+      if (!part.castShadow || part === light) return
+      const { geometry } = part as Mesh
+      const place = geometry.getAttribute('position') as BufferAttribute | undefined
+      now.push(geometry.id, place?.version ?? 0, ...part.matrixWorld.elements)
     })
     const same = now.length === this.known.length && now.every((value, i) => value === this.known[i])
     this.known = now

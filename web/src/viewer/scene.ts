@@ -82,6 +82,12 @@ export interface ColumnHeader {
   unit: string
 }
 
+/** A mesh by a name that it shares with those that differ in nothing but their size, m. */
+export interface MeshHeader {
+  name: string
+  size: number
+}
+
 export interface SceneHeader {
   /** Of a page that computes the motion itself. */
   live?: LiveHeader
@@ -95,6 +101,8 @@ export interface SceneHeader {
   scenario?: unknown
   scenario_toml?: string
   columns: Record<string, ColumnHeader>
+  /** Of a scene that leaves out what is known already. */
+  meshes?: { body?: MeshHeader; support?: MeshHeader }
   gravity: Triple
   tilt: number
   to_world: Turn

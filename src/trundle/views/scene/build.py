@@ -63,7 +63,7 @@ def scene_of(
     if curves or with_card:
         header["curves"], more = curves_of(run.system, at)
         columns |= more
-    columns |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
+    columns |= body.columns("body") | ground.mesh.columns("support")
     found = findings_of(run.system, run.start, run.samples, form)
     header |= {
         "seconds": seconds,
@@ -73,7 +73,8 @@ def scene_of(
         "guiding_centre": "guiding_centre" in columns,
         "card": run.card().as_dict() if with_card else None,
     }
-    return Scene(header, columns, {name: unit for name, unit in UNITS.items() if name in columns})
+    units = {name: unit for name, unit in UNITS.items() if name in columns}
+    return Scene(header, columns, units, {"body": body, "support": ground.mesh})
 
 
 def places_of(run: Trajectory) -> np.ndarray:

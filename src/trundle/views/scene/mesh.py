@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+PAINTS = {"body": "body_pattern", "support": "support_marks"}  # the column of a mesh's paint, by whose mesh it is
+_ALIKE = 1e-5  # share of its size by which a mesh may differ from one of the same name: a hundredth of a pixel
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,14 +26,34 @@ class Mesh:
     triangles: NDArray[np.uint32]  # (t, 3): anticlockwise seen from where the normals point to
     paint: Array  # (v, 2) or (v, 3): coordinates that the markings are painted by
 
-    def columns(self, name: str, paint: str) -> dict[str, NDArray[Any]]:
-        """Return it as columns, their names beginning alike."""
-        return {
-            f"{name}_vertices": self.vertices.astype(np.float32),
-            f"{name}_normals": self.normals.astype(np.float32),
-            f"{name}_triangles": self.triangles.astype(np.uint32),
-            paint: self.paint.astype(np.float32),
-        }
+    def columns(self, name: str) -> dict[str, NDArray[Any]]:
+        """Return it as columns, their names beginning with whose mesh it is."""
+        parts = (
+            self.vertices.astype(np.float32),
+            self.normals.astype(np.float32),
+            self.triangles.astype(np.uint32),
+            self.paint.astype(np.float32),
+        )
+        return dict(zip(columns_of_mesh(name), parts, strict=True))
+
+    @cached_property
+    def size(self) -> float:
+        """How far it reaches from its origin along an axis, m."""
+        return float(np.max(np.abs(self.vertices), initial=0.0))
+
+    @cached_property
+    def name(self) -> str:
+        """A short text that all meshes share that differ in nothing but their size."""
+        digest = hashlib.blake2b(digest_size=12)
+        for part in (self.vertices / (self.size or 1.0), self.normals, self.paint):
+            digest.update(np.rint(part / _ALIKE).astype("<i4").tobytes())
+        digest.update(self.triangles.astype("<u4").tobytes())
+        return digest.hexdigest()
+
+
+def columns_of_mesh(name: str) -> tuple[str, str, str, str]:
+    """Return the names of a mesh's columns: vertices, normals, triangles and paint."""
+    return f"{name}_vertices", f"{name}_normals", f"{name}_triangles", PAINTS[name]
 
 
 def joined(meshes: list[Mesh]) -> Mesh:

@@ -38,7 +38,7 @@ def sphere_scene(radius: float, columns: dict[str, Array], header: dict[str, Any
     moved["phase"] = np.zeros(n, dtype=np.uint8)
     body = body_mesh(Body.solid_sphere(radius, 1.0))
     ground = ground_of(Plane(), False, contact, radius)
-    moved |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
+    moved |= body.columns("body") | ground.mesh.columns("support")
     told = {
         "duration": float(columns["time"][-1] - columns["time"][0]),
         "body": body_table("sphere", "Sphere", radius),
@@ -46,4 +46,4 @@ def sphere_scene(radius: float, columns: dict[str, Array], header: dict[str, Any
         "guiding_centre": "guiding_centre" in columns,
     }
     units = {key: unit for key, unit in UNITS.items() if key in moved}
-    return Scene(header_with(**{**told, **header}), moved, units)
+    return Scene(header_with(**{**told, **header}), moved, units, {"body": body, "support": ground.mesh})

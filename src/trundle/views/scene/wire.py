@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import math
 import struct
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import TrundleError
+from .mesh import Mesh, columns_of_mesh
 
 MAGIC = b"TRUNDLE1"
 FORMAT = 3
@@ -43,10 +44,14 @@ class Scene:
     # samples over `time`, and the two meshes, each as float32, float64, uint32 or uint8
     columns: dict[str, NDArray[Any]]
     units: dict[str, str] = field(default_factory=dict)  # the unit of each column that has one
+    meshes: Mapping[str, Mesh] = field(default_factory=dict)  # that are among the columns: "body" and "support"
 
 
-def pack(scene: Scene) -> bytes:
+def pack(scene: Scene, known: Collection[str] | None = None) -> bytes:
     """Return a scene as bytes.
+
+    `known`: the names of meshes that whoever reads it has from before. Its own are named then, under `meshes` in the
+    header with their size, and those that are known, if in another size, are left out.
 
     Examples
     --------
@@ -55,7 +60,13 @@ def pack(scene: Scene) -> bytes:
     (b'TRUNDLE1', 107)
     """
     described, parts, offset = {}, [], 0
+    named = {} if known is None else scene.meshes
+    left_out = {
+        column for whose, mesh in named.items() if mesh.name in (known or ()) for column in columns_of_mesh(whose)
+    }
     for name, column in scene.columns.items():
+        if name in left_out:
+            continue
         kind = _name(column.dtype)
         if kind not in _TYPES:
             raise TypeError(f"the column {name!r} must be one of {', '.join(_TYPES)}; got {kind}")
@@ -67,7 +78,8 @@ def pack(scene: Scene) -> bytes:
         }
         parts.append(_differences(column) if column.size else b"")
         offset += len(parts[-1])
-    header = plain({**scene.header, "columns": described})
+    meshes = {whose: {"name": mesh.name, "size": mesh.size} for whose, mesh in named.items()}
+    header = plain({**scene.header, "columns": described, **({"meshes": meshes} if meshes else {})})
     text = json.dumps(header, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
     return b"".join([_START.pack(MAGIC, len(text), 0), text, *parts])
 

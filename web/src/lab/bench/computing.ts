@@ -32,6 +32,8 @@ const REST = 600
 
 interface Asked {
   scenario: Scenario
+  /** What is shown and changes under a hand, or rests now; absent where another is opened, with one answer for all. */
+  like?: Scene | undefined
   /** How little is enough for now; absent: all there is. */
   enough?: { tolerance: number; samples?: number; curves?: boolean }
 }
@@ -48,7 +50,7 @@ export function createComputing(app: App, listener: Listener): Computing {
   let shown: { scene: Scene; asked: Asked } | undefined
 
   const runner = createRunner<Asked, { scene: Scene; milliseconds: number }>({
-    run: ({ scenario, enough }, signal) => app.api.simulate(scenario, { signal, lane: null, ...enough }),
+    run: ({ scenario, like, enough }, signal) => app.api.simulate(scenario, { signal, lane: null, like, ...enough }),
     done({ scene, milliseconds }, asked) {
       const again = shown?.asked.scenario === asked.scenario
       shown = { scene, asked }
@@ -66,7 +68,7 @@ export function createComputing(app: App, listener: Listener): Computing {
   async function whenAtRest(scenario: Scenario): Promise<void> {
     if (shown?.asked.scenario !== scenario) return
     listener.settled(shown.scene)
-    if (coarse(shown.scene, shown.asked)) runner.ask({ scenario })
+    if (coarse(shown.scene, shown.asked)) runner.ask({ scenario, like: shown.scene })
     if (!scenario.support) {
       listener.card({ state: 'none', message: 'A path that is rolled without forces has no card.' })
       return
@@ -94,7 +96,8 @@ export function createComputing(app: App, listener: Listener): Computing {
       app.api.cancel('card')
       app.api.cancel('possible')
       listener.card({ state: 'waiting' })
-      runner.ask({ scenario, enough: change?.gesture === undefined ? QUICK : { ...MOVING, curves: listener.curves } })
+      if (change?.gesture === undefined) runner.ask({ scenario, enough: QUICK })
+      else runner.ask({ scenario, enough: { ...MOVING, curves: listener.curves }, like: shown?.scene })
       later(scenario)
     },
     stop() {
