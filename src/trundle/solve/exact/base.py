@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import OutOfDomainError, SolverError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.duals import has_duals, values_of
+from ...mechanics.records import remembered
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
 from .circle import Circle
@@ -30,6 +31,12 @@ _ENDS = {
     "slip": "it begins to slip after",
     "stop": "it comes to rest after",
 }
+
+
+@remembered
+def _plain(system: RollingSystem) -> RollingSystem:
+    """Return a system whose numbers are no duals."""
+    return values_of(system) if has_duals(system) else system
 
 
 class ClosedForm:
@@ -131,12 +138,11 @@ class ClosedForm:
             values are asked.
         """
         if cls not in system._known:  # the same system is asked about at each of its events
-            system._known[cls] = cls._outside(values_of(system) if has_duals(system) else system)
+            system._known[cls] = cls._outside(_plain(system))
         found: list[str] = list(system._known[cls])
         if found or start is None or not any(condition.about == START for condition in cls.conditions):
             return found
-        given = (system, start)
-        return cls._failures(START, *(values_of(given) if has_duals(given) else given))
+        return cls._failures(START, _plain(system), values_of(start) if has_duals(start) else start)
 
     @classmethod
     def _outside(cls, system: RollingSystem) -> list[str]:

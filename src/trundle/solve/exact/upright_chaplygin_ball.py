@@ -210,28 +210,41 @@ class UprightChaplyginBall(ClosedForm):
 
         return PreciseRunning(turning, 0.5 * _PIECE / abs(self._floats.scale))
 
-    def _state(self, t: Any) -> tuple[Constants, Now, Any, Any, Any, Any]:
-        """Return constants, what repeats, cos ψ and sin ψ, and ∫Ω over the plane."""
+    def _turned(self, t: Any) -> tuple[Constants, Now, Any]:
+        """Return constants, what repeats, and e^iψ, the axis that it is told along."""
         if _is_mpmath(t):
             import mpmath
 
             c = Constants.of(self, t)
-            turn, (x, y) = mpmath.expj(c.psi + precession(c, t)), self._precise.at(t)
-            gone = mpmath.expj(c.psi) * mpmath.mpc(x, y)
-            return c, c.at(t, 1), turn.real, turn.imag, gone.real, gone.imag
-        c = self._floats
-        t = np.asarray(t, dtype=float)
-        y, turned = phase((c.rate, c.rate_rest), t)
-        rounds, rest = np.round((y - turned) / (2 * math.pi)), turned / c.rate
+            return c, c.at(t, 1), mpmath.expj(c.psi + precession(c, t))
+        c, (rounds, rest) = self._floats, self._rounds(t)
         parity = 1.0 - 2.0 * (rounds % 2)
-        flips = parity if c.middle else 1.0
-        before = np.exp(1j * (c.psi + phase((c.gain, c.gain_rest), rounds)[1]))  # with the flips in it
-        here, way = np.exp(1j * self._precession.at(rest)[0]), self._way.at(rest)
-        half = 0.5 * c.gain
+        here = np.exp(1j * self._precession.at(rest)[0])
+        return c, c.at(rest, parity), self._before(rounds) * (parity if c.middle else 1.0) * here
+
+    def _rounds(self, t: Any) -> tuple[Any, Any]:
+        """Return how many half rounds are done, and the time since, s."""
+        c = self._floats
+        y, turned = phase((c.rate, c.rate_rest), np.asarray(t, dtype=float))
+        return np.round((y - turned) / (2 * math.pi)), turned / c.rate
+
+    def _before(self, rounds: Any) -> Any:
+        """Return e^iψ after some half rounds, with the flips in it."""
+        c = self._floats
+        return np.exp(1j * (c.psi + phase((c.gain, c.gain_rest), rounds)[1]))
+
+    def _gone(self, t: Any) -> Any:
+        """Return ∫Ω over the plane since the start, as a complex number."""
+        if _is_mpmath(t):
+            import mpmath
+
+            c, (x, y) = Constants.of(self, t), self._precise.at(t)
+            return mpmath.expj(c.psi) * mpmath.mpc(x, y)
+        c, (rounds, rest) = self._floats, self._rounds(t)
+        way, half = self._way.at(rest), 0.5 * c.gain
         many = rounds if half == 0 else np.sin(phase((half, 0.5 * c.gain_rest), rounds)[1]) / math.sin(half)
         summed = many * np.exp(1j * (c.psi + phase((half, 0.5 * c.gain_rest), rounds - 1.0)[1])) * self._round
-        gone, turn = summed + before * (way[0] + 1j * way[1]), before * flips * here
-        return c, c.at(rest, parity), turn.real, turn.imag, gone.real, gone.imag
+        return summed + self._before(rounds) * (way[0] + 1j * way[1])
 
     # The motion
 
@@ -246,30 +259,39 @@ class UprightChaplyginBall(ClosedForm):
         """
         if not is_one(self):
             return one_by_one(self, t)
-        c, now, cosine, sine, X, Y = self._state(t)
-        Ox, Oy = now.along * cosine - now.across * sine, now.along * sine + now.across * cosine
+        (c, now, turn), gone = self._turned(t), self._gone(t)
+        Omega = self._angular_velocity(c, now, turn)
         along, across = now.along_rate - now.precession * now.across, now.across_rate + now.precession * now.along
-        a, m, zero = c.radius, c.mass, 0 * Ox
-        fx, fy = along * cosine - across * sine, along * sine + across * cosine
+        a, m, zero = c.radius, c.mass, 0 * Omega.x
+        fx, fy = along * turn.real - across * turn.imag, along * turn.imag + across * turn.real
         return (
-            Vector(c.px + a * Y, c.py - a * X, a + zero),
-            Vector(a * Oy, -a * Ox, zero),
-            Vector(Ox, Oy, c.upright + zero),
+            Vector(c.px + a * gone.imag, c.py - a * gone.real, a + zero),
+            Vector(a * Omega.y, -a * Omega.x, zero),
+            Omega,
             Vector(m * a * fy, -m * a * fx, c.normal_force + zero),
         )
 
+    def angular_velocity_at(self, t: Any) -> Vector:
+        """Return Ω alone, without the path."""
+        return self._angular_velocity(*self._turned(t)) if is_one(self) else self.motion_at(t)[2]
+
+    @staticmethod
+    def _angular_velocity(c: Constants, now: Now, turn: Any) -> Vector:
+        x, y, along, across = turn.real, turn.imag, now.along, now.across
+        Ox = along * x - across * y
+        return Vector(Ox, along * y + across * x, c.upright + 0 * Ox)
+
     def representative_orientation(self, t: Any) -> Quaternion:
         """Return the orientation, or the same with the other sign."""
-        c, now, cosine, sine, _, _ = self._state(t)
+        c, now, turn = self._turned(t)
         leaned = stance_of(E_Z, now.normal).conjugate  # takes n in the body to n; a turn about n is left
         e = leaned.matrix() @ c.followed
-        size = namespace(cosine).sqrt(e.x * e.x + e.y * e.y)
+        size = namespace(turn.real).sqrt(e.x * e.x + e.y * e.y)
         size = size + (size == 0)
-        c2, s2 = (cosine * e.x + sine * e.y) / size, (sine * e.x - cosine * e.y) / size
+        c2, s2 = (turn.real * e.x + turn.imag * e.y) / size, (turn.imag * e.x - turn.real * e.y) / size
         xp = namespace(c2)
         half = 0.5 * xp.atan2(s2, c2)
-        turn = Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half))
-        return turn * leaned * Quaternion(*self.body_axes).conjugate
+        return Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half)) * leaned * Quaternion(*self.body_axes).conjugate
 
     # What is shown
 

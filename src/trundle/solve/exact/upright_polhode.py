@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 from ...mechanics.algebra import Quaternion, Vector
@@ -58,8 +58,12 @@ class Constants:
         """Return the constants as floats, or as mpmath's numbers if the time is one."""
         import mpmath
 
-        found = _worked_out(form, max(_DIGITS, mpmath.mp.dps))
-        return Constants(*found) if type(t).__module__.startswith("mpmath") else Constants(*map(float, found))
+        turning = replace(form, position=(0.0, 0.0), normal_force=0.0)  # neither has a part in how it turns
+        found = _worked_out(turning, max(_DIGITS, mpmath.mp.dps))
+        plain = form.radius, form.mass, form.normal_force, *form.position
+        if type(t).__module__.startswith("mpmath"):
+            return Constants(*map(mpmath.mpf, plain), *found)
+        return Constants(*map(float, (*plain, *found)))
 
     @property
     def followed(self) -> Vector:
@@ -69,36 +73,69 @@ class Constants:
 
     def at(self, t: Any, parity: Any) -> Now:
         """Return what repeats; sn and cn have changed their signs after an odd number of half rounds, parity −1."""
-        sn, cn, dn = elliptic(self.u0 + self.scale * t, self.complement)
-        h, o, of_h, of_o = (cn, dn, 1, self.parameter) if self.middle else (dn, cn, self.parameter, 1)
-        square = 1 - self.nu * sn * sn
-        q = namespace(square).sqrt(square)
-        along_rate = self.outward * sn * o * (self.nu * h * h / square - of_h) / q
-        across_rate = self.sideways * h * (o * o - of_o * sn * sn + self.nu * sn * sn * o * o / square) / q
-        first, third = Vector(self.a_x, self.a_y, self.a_z), Vector(self.c_x, self.c_y, self.c_z)
-        second = third.cross(first)
-        normal = first * (self.ga * cn) + second * (self.gb * sn)
-        flips = parity if self.middle else 1
-        return Now(
-            along=self.outward * h / q * flips,
-            across=self.sideways * sn * o / q * flips,
-            along_rate=self.scale * along_rate * flips,
-            across_rate=self.scale * across_rate * flips,
-            precession=self.steady + self.extra / square,
-            normal=normal * parity + third * (self.gc * dn),
-        )
+        return Now(self, *elliptic(self.u0 + self.scale * t, self.complement), parity)
 
 
 @dataclass(frozen=True)
 class Now:
-    """What repeats in the motion, at a time."""
+    """What repeats in the motion, at a time: each is worked out where it is asked for."""
 
-    along: Any  # Ω over the plane, along the axis and across it, rad/s
-    across: Any
-    along_rate: Any  # as seen from the axis, rad/s²
-    across_rate: Any
-    precession: Any  # ψ̇, rad/s
-    normal: Vector  # n along the principal axes
+    constants: Constants
+    sn: Any
+    cn: Any
+    dn: Any
+    parity: Any
+
+    @cached_property
+    def _square(self) -> Any:
+        return 1 - self.constants.nu * self.sn * self.sn
+
+    @cached_property
+    def _over(self) -> Any:
+        """Its root, with the sign of Ω over the plane."""
+        flips = self.parity if self.constants.middle else 1
+        return namespace(self._square).sqrt(self._square) * flips
+
+    @property
+    def _h_and_o(self) -> tuple[Any, Any]:
+        return (self.cn, self.dn) if self.constants.middle else (self.dn, self.cn)
+
+    @property
+    def along(self) -> Any:
+        """Ω over the plane, along the axis, rad/s."""
+        return self.constants.outward * self._h_and_o[0] / self._over
+
+    @property
+    def across(self) -> Any:
+        """The same across it."""
+        return self.constants.sideways * self.sn * self._h_and_o[1] / self._over
+
+    @property
+    def along_rate(self) -> Any:
+        """How fast `along` grows as seen from the axis, rad/s²."""
+        c, (h, o) = self.constants, self._h_and_o
+        of_h = 1 if c.middle else c.parameter
+        return c.scale * c.outward * self.sn * o * (c.nu * h * h / self._square - of_h) / self._over
+
+    @property
+    def across_rate(self) -> Any:
+        """The same of `across`."""
+        c, (h, o), s = self.constants, self._h_and_o, self.sn
+        of_o = c.parameter if c.middle else 1
+        return c.scale * c.sideways * h * (o * o - of_o * s * s + c.nu * s * s * o * o / self._square) / self._over
+
+    @property
+    def precession(self) -> Any:
+        """ψ̇, rad/s."""
+        return self.constants.steady + self.constants.extra / self._square
+
+    @property
+    def normal(self) -> Vector:
+        """The normal along the principal axes."""
+        c = self.constants
+        first, third = Vector(c.a_x, c.a_y, c.a_z), Vector(c.c_x, c.c_y, c.c_z)
+        circled = first * (c.ga * self.cn) + third.cross(first) * (c.gb * self.sn)
+        return circled * self.parity + third * (c.gc * self.dn)
 
 
 @dataclass(frozen=True)
@@ -142,13 +179,11 @@ class Polhode:
 
 @lru_cache(maxsize=_FORMS)
 def _worked_out(form: UprightChaplyginBall, digits: int) -> tuple[Any, ...]:
-    """Return the fields of `Constants` as mpmath numbers."""
+    """Return the fields of `Constants` from `complement` on as mpmath numbers."""
     import mpmath
 
     with mpmath.workdps(digits):
-        a, m, N, L = map(mpmath.mpf, (form.radius, form.mass, form.normal_force, form.momentum))
-        px, py = map(mpmath.mpf, form.position)
-        n = Polhode.of(form)
+        L, n = mpmath.mpf(form.momentum), Polhode.of(form)
         (Ia, Ib, Ic), (first, _, third) = n.inertia, n.axes
         wide_a, wide_b = mpmath.sqrt(Ia / abs(Ic - Ia)), mpmath.sqrt(Ib / abs(Ic - Ib))
         side = mpmath.mpf(1 if Ic > Ia else -1)
@@ -174,7 +209,7 @@ def _worked_out(form: UprightChaplyginBall, digits: int) -> tuple[Any, ...]:
         gain = gain - tau * mpmath.nint(gain / tau)
         rate_high, gain_high = mpmath.mpf(float(rate)), mpmath.mpf(float(gain))
         return (
-            a, m, N, px, py, n.complement, parameter, scale, u0, mpmath.mpf(int(middle)), steady, extra, nu,
+            n.complement, parameter, scale, u0, mpmath.mpf(int(middle)), steady, extra, nu,
             outward, sideways, L * n.inverse, mpmath.ellippi(nu, angle, parameter), mpmath.atan2(out.y, out.x),
             rate_high, rate - rate_high, gain_high, gain - gain_high, ga, gb, gc, *first, *third,
         )  # fmt: skip
