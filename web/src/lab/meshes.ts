@@ -3,7 +3,7 @@ import type { Columns, Scene } from '../viewer/scene'
 
 const MOST = 24
 const PARTS = {
-  body: ['body_vertices', 'body_normals', 'body_triangles', 'body_pattern'],
+  body: ['body_vertices', 'body_normals', 'body_triangles', 'body_pattern', 'body_coarse'],
   support: ['support_vertices', 'support_normals', 'support_triangles', 'support_marks'],
 } as const
 

@@ -143,6 +143,8 @@ export interface Columns {
   body_normals?: Float32Array
   body_triangles?: Uint32Array
   body_pattern?: Float32Array
+  /** Fewer triangles of the same vertices, for pictures of few pixels. */
+  body_coarse?: Uint32Array
   support_vertices?: Float32Array
   support_normals?: Float32Array
   support_triangles?: Uint32Array

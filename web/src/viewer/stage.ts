@@ -111,7 +111,7 @@ export class Stage {
   }
 
   private usePixels(): void {
-    const screen = Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT)
+    const screen = pixelsPerPoint()
     const full = this.byProcessor && this.sharpness === 1 ? Math.max(screen, SMOOTHED) : screen
     this.renderer.setPixelRatio(this.sharpness * full)
   }
@@ -171,6 +171,11 @@ export class Stage {
     this.renderer.dispose()
     this.renderer.forceContextLoss()
   }
+}
+
+/** As many pixels of the screen as are used for a CSS pixel where a picture is drawn in full, or more. */
+export function pixelsPerPoint(): number {
+  return Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT)
 }
 
 const projected = new Vector3()

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...mechanics.algebra import Vector
 from ...mechanics.bodies import Body
@@ -88,7 +89,14 @@ def _convex(shape: Shape) -> Mesh:
         if missing.reshape(_ROWS + 1, _AROUND + 1)[pole].all():
             grid[pole] = grid[ring, :-1].mean(axis=0)  # the middle of a flat face
     x = grid.reshape(-1, 3)
-    return Mesh(x, nu, oriented(x, nu, grid_triangles(_ROWS + 1, _AROUND + 1)), nu)
+    return Mesh(x, nu, oriented(x, nu, grid_triangles(_ROWS + 1, _AROUND + 1)), nu, _coarse(x, nu))
+
+
+def _coarse(x: Array, nu: Array) -> NDArray[np.uint32]:
+    """Return triangles over every other row and column of the grid, with the edge of a face across the axis."""
+    rows = np.unique([*range(0, _ROWS + 1, 2), 1, _ROWS - 1])
+    kept = (rows[:, None] * (_AROUND + 1) + np.arange(0, _AROUND + 1, 2)).ravel()
+    return oriented(x, nu, kept[grid_triangles(rows.size, _AROUND // 2 + 1)].astype(np.uint32))
 
 
 def _directions(shape: Shape) -> Array:

@@ -25,16 +25,14 @@ class Mesh:
     normals: Array
     triangles: NDArray[np.uint32]  # (t, 3): anticlockwise seen from where the normals point to
     paint: Array  # (v, 2) or (v, 3): coordinates that the markings are painted by
+    coarse: NDArray[np.uint32] | None = None  # (c, 3): fewer triangles of the same vertices, for pictures of few pixels
 
     def columns(self, name: str) -> dict[str, NDArray[Any]]:
         """Return it as columns, their names beginning with whose mesh it is."""
-        parts = (
-            self.vertices.astype(np.float32),
-            self.normals.astype(np.float32),
-            self.triangles.astype(np.uint32),
-            self.paint.astype(np.float32),
-        )
-        return dict(zip(columns_of_mesh(name), parts, strict=True))
+        parts = (self.vertices, self.normals, self.paint, self.triangles, self.coarse)
+        kinds = (np.float32,) * 3 + (np.uint32,) * 2
+        columns = zip(columns_of_mesh(name), parts, kinds, strict=True)
+        return {column: part.astype(kind) for column, part, kind in columns if part is not None}
 
     @cached_property
     def size(self) -> float:
@@ -47,13 +45,14 @@ class Mesh:
         digest = hashlib.blake2b(digest_size=12)
         for part in (self.vertices / (self.size or 1.0), self.normals, self.paint):
             digest.update(np.rint(part / _ALIKE).astype("<i4").tobytes())
-        digest.update(self.triangles.astype("<u4").tobytes())
+        for triangles in (self.triangles, self.coarse):
+            digest.update(b"" if triangles is None else triangles.astype("<u4").tobytes())
         return digest.hexdigest()
 
 
-def columns_of_mesh(name: str) -> tuple[str, str, str, str]:
-    """Return the names of a mesh's columns: vertices, normals, triangles and paint."""
-    return f"{name}_vertices", f"{name}_normals", f"{name}_triangles", PAINTS[name]
+def columns_of_mesh(name: str) -> tuple[str, str, str, str, str]:
+    """Return the names of a mesh's columns: vertices, normals, paint, triangles, and fewer of these."""
+    return f"{name}_vertices", f"{name}_normals", PAINTS[name], f"{name}_triangles", f"{name}_coarse"
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
