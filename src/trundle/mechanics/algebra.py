@@ -206,6 +206,35 @@ class Matrix:
 
 
 @frozen_record()
+class IsotropicTensor(Matrix):
+    """c·1, the same in all directions, as a ball's inertia is.
+
+    Examples
+    --------
+    >>> IsotropicTensor.of(2.0).solve(Vector(1.0, 0.0, 4.0))
+    Vector(x=0.5, y=0.0, z=2.0)
+    """
+
+    size: Scalar
+
+    @staticmethod
+    def of(size: Scalar) -> IsotropicTensor:
+        """Return c·1."""
+        return IsotropicTensor(Vector(size, 0.0, 0.0), Vector(0.0, size, 0.0), Vector(0.0, 0.0, size), size)
+
+    def __matmul__(self, other: Any) -> Any:
+        return other * self.size
+
+    def __rmatmul__(self, v: Vector) -> Vector:
+        """Return vᵀ M, which is M v."""
+        return v * self.size
+
+    def solve(self, v: Vector) -> Vector:
+        """Return v/c."""
+        return v / self.size
+
+
+@frozen_record()
 class TangentialTensor(Matrix):
     """c P H P with P = 1 − n nᵀ: what is left of a symmetric H across a unit vector n.
 

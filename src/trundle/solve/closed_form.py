@@ -99,7 +99,7 @@ def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: f
 
 def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, duration: float) -> tuple[float, str] | None:
     """Return when and by which of the law's events the form's motion ends, if it does within the duration."""
-    names = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
+    names = _event_names(system, now)
     known = {name: t for name, t in form.ends_at.items() if name in names and 0 <= t <= duration}
     sooner = min(((t, name) for name, t in known.items()), default=None)
     given = {*form.ends_at, *(f"near {name}" for name in form.ends_at), *form.impossible_events}
@@ -111,6 +111,15 @@ def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, durati
     looks = [(t, _PHASE_A_STEP / pace if pace > 0 else math.inf) for t, pace in form.max_rates(upto)]
     found = first_stop(values, looks)
     return sooner if found is None else (found[0], asked[found[1]])
+
+
+def _event_names(system: RollingSystem, now: PhaseStart) -> tuple[str, ...]:
+    """Return the names of a law's events, which are the same wherever it begins; they are asked for once."""
+    key = _event_names, type(now.law), *sorted(vars(now.law).items()), len(now.event_parameters)
+    if key not in system._known:
+        system._known[key] = tuple(now.law.event_functions(system, now.time, now.state_vector, now.event_parameters))
+    found: tuple[str, ...] = system._known[key]
+    return found
 
 
 def _values(system: RollingSystem, now: PhaseStart, form: ClosedForm, asked: list[str]) -> Callable[[Any], Any]:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from ...errors import InvalidValueError
 from .. import checks
-from ..algebra import ZERO, Matrix, RotatedTensor, Vector
+from ..algebra import ZERO, IsotropicTensor, Matrix, RotatedTensor, Vector
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar, is_number, is_zero, namespace
 
@@ -68,9 +68,9 @@ class Isotropic:
     def __post_init__(self) -> None:
         object.__setattr__(self, "moment", checks.positive(self.moment, "inertia", "inertia.moment"))
 
-    def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002  the same from every side
+    def in_space(self, Q: Matrix, body: Any) -> IsotropicTensor:  # noqa: ARG002  the same from every side
         """Return the inertia tensor in the support frame, kg m²."""
-        return Matrix.diagonal(self.moment, self.moment, self.moment)
+        return IsotropicTensor.of(self.moment)
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:  # noqa: ARG002
         """Return Ω×JΩ = 0: JΩ is along Ω."""
@@ -116,10 +116,9 @@ class RatioInertia:
     def __post_init__(self) -> None:
         object.__setattr__(self, "ratio", checks.positive(self.ratio, "number", "inertia_ratio"))
 
-    def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002  the same from every side
+    def in_space(self, Q: Matrix, body: Any) -> IsotropicTensor:  # noqa: ARG002  the same from every side
         """Return the inertia tensor in the support frame, kg m²."""
-        moment = self.ratio * body.mass * body.radius * body.radius
-        return Matrix.diagonal(moment, moment, moment)
+        return IsotropicTensor.of(self.ratio * body.mass * body.radius * body.radius)
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:  # noqa: ARG002
         """Return Ω×JΩ = 0: JΩ is along Ω."""
