@@ -90,7 +90,7 @@ def test_what_moves_is_computed_quickly_and_what_rests_in_full(page: Page) -> No
     def in_full() -> None:
         quick = [one for one in asked if "tolerance" in one]  # what was opened may be asked for in full, too, before
         assert quick
-        assert (quick[-1]["tolerance"], quick[-1]["samples"]) == (1e-9, 1500)
+        assert (quick[-1]["tolerance"], quick[-1]["samples"]) == (1e-9, 1000)
         assert asked[-1]["scenario"] == quick[-1]["scenario"]
         assert "tolerance" not in asked[-1]
         assert "samples" not in asked[-1]

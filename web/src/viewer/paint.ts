@@ -70,8 +70,8 @@ vec3 painted(vec2 marks, vec3 place) {
   }
   return tone * (1.0 - shade * near);
 }
-float kept(vec3 place) { // of a plane that has no edge: it is lost in the distance
-#ifndef ENDLESS
+float kept(vec3 place) { // of a plane whose edge is not shown: it is lost in the distance
+#ifndef FLAT
   return 1.0;
 #else
   vec2 off = abs(place.xy - fade.xy) / fade.zw;
@@ -128,16 +128,15 @@ export interface SupportPaint {
   fade: { value: Vector4 }
 }
 
-/** How a support is marked: `square`, else round its axis; `flat`: with rings at round distances; `endless`: it fades. */
+/** How a support is marked: `square`, else round its axis; `flat`: with rings at round distances, and it may fade. */
 export interface Marking {
   square: boolean
   flat: boolean
-  endless: boolean
 }
 
 /** Let a support's material hold just the code of its marking. */
-export function mark(material: Material, { square, flat, endless }: Marking): void {
-  const wanted = { ...(square && { SQUARE: '' }), ...(flat && { FLAT: '' }), ...(endless && { ENDLESS: '' }) }
+export function mark(material: Material, { square, flat }: Marking): void {
+  const wanted = { ...(square && { SQUARE: '' }), ...(flat && { FLAT: '' }) }
   if (String(Object.keys(wanted)) === String(Object.keys(material.defines ?? {}))) return
   material.defines = wanted
   material.needsUpdate = true

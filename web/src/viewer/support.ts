@@ -72,16 +72,17 @@ export class SupportModel {
     const square = support.marks === 'square'
     for (const part of [this.front, this.back, this.side]) {
       part.visible = there && part !== this.side
-      mark(part.material, { square, flat, endless: boundless })
+      mark(part.material, { square, flat })
     }
     this.rim.setPoints(new Float32Array())
     if (!there) return
     const geometry = sheet ? sheetUnder(scenes) : geometryOf(scene)
     this.measure(geometry, flat, square)
-    this.replace(this.front, geometry, boundless)
+    // Any plane is drawn as one that fades, so that no program is needed anew where its edge comes and goes.
+    this.replace(this.front, geometry, flat)
     this.replace(this.back, geometry, true)
     this.side.visible = edged
-    if (edged) this.replace(this.side, skirt(support.rim!), false)
+    if (edged) this.replace(this.side, skirt(support.rim!), flat)
     if (boundless) this.paint.fade.value.copy(extentOf(geometry))
     else this.rim.setPoints(pieces(edgesOf(vertices, triangles)))
   }
@@ -162,6 +163,8 @@ export class SupportModel {
 }
 
 const from = new Vector3()
+/** Where a plane fades that does not: so far off. */
+const NOWHERE = new Vector4(0, 0, 1e30, 1e30)
 
 /** Whether two scenes' supports look the same: to make one anew takes longer than to compare. */
 function sameGround(one: Scene, other: Scene): boolean {
@@ -186,7 +189,7 @@ function newPaint(): SupportPaint {
     shade: { value: 0.6 },
     touching: { value: 0 },
     touches: { value: Array.from({ length: MOST_TOUCHES }, () => new Vector4(0, 0, 0, 0)) },
-    fade: { value: new Vector4(0, 0, 0, 0) },
+    fade: { value: NOWHERE.clone() },
   }
 }
 
@@ -194,7 +197,7 @@ function newPaint(): SupportPaint {
 function repaint(paint: SupportPaint, { header: { support } }: Scene): void {
   paint.contrast.value = support.moves ? 1 : 0.45
   paint.accented.value = support.moves ? 1 : 0
-  paint.fade.value.set(0, 0, 0, 0)
+  paint.fade.value.copy(NOWHERE)
 }
 
 function geometryOf({ columns }: Scene): BufferGeometry {

@@ -27,7 +27,7 @@ export interface Computing {
 
 /** What is enough for the eye, which sees no billionth of a path, and while a hand moves no more points of it than these. */
 const QUICK = { tolerance: 1e-9 }
-const MOVING = { ...QUICK, samples: 1500 }
+const MOVING = { ...QUICK, samples: 1000 }
 const REST = 600
 
 interface Asked {
