@@ -11,7 +11,8 @@ import numpy as np
 
 from ..errors import OutOfDomainError, SolverError, TurnsTooFastError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, contact_at
+from ..mechanics.contact import Contact, contact_at, normal_on
+from ..mechanics.motions import SupportState
 from ..mechanics.nearest import closest_contact
 from ..mechanics.records import frozen_record
 from ..mechanics.scalars import is_number
@@ -237,15 +238,20 @@ def _contact(
         t, x, y, z, *rest = (float(part) for part in first)
         place = closest_contact(system, t, Vector(x, y, z), Quaternion(*rest[:4]), tuple(rest[4:])).point
         return place + ZERO * time
-    return _point(system, law, contact_at(system, time, centre, q, coordinates), centre)
+    if law.code == FLIGHT:
+        support = system.support.motion.at(time, *coordinates)
+        return _under(system, support, normal_on(system, support, centre), centre)
+    return centre + contact_at(system, time, centre, q, coordinates).offset
 
 
 def _point(system: RollingSystem, law: Law, contact: Contact, centre: Vector) -> Vector:
-    """Return p of a body whose normal at the contact is known; in flight straight under the centre, on the support."""
-    if law.code != FLIGHT:
-        return centre + contact.offset
-    there = contact.support.local(centre)
-    return centre - contact.normal * system.support.surface.level(there)
+    """Return p of a body whose normal at the contact is known."""
+    return _under(system, contact.support, contact.normal, centre) if law.code == FLIGHT else centre + contact.offset
+
+
+def _under(system: RollingSystem, support: SupportState, n: Vector, centre: Vector) -> Vector:
+    """Return the point of the support straight under the centre."""
+    return centre - n * system.support.surface.level(support.local(centre))
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
@@ -264,7 +270,7 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     straight = motion.fixed_axis_rotation(times - start.time)
     if straight is not None:
         axis, angle = straight
-        half, q = np.broadcast_to(0.5 * np.asarray(angle), times.shape), Quaternion(*start.orientation)
+        half, q = 0.5 * angle + np.zeros_like(times), Quaternion(*start.orientation)
         both = np.array([[*q], [*(Quaternion(0.0, *axis) * q)]], dtype=float)
         return np.array([np.cos(half), np.sin(half)]).T @ both
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
@@ -82,7 +81,8 @@ class ContactState:
         """Return the body moved along the normal until it is so far over the support, m."""
         centre, was = self.contact.centre + self.contact.normal * gap, self.state
         moved = State(floats(centre), was.velocity, was.angular_velocity, was.orientation, was.time, was.support)
-        return replace(self, state=moved, gap=gap)
+        V, Omega, slip, arm, speed = self.V, self.Omega, self.slip, self.arm, self.speed
+        return ContactState(moved, self.contact, self.orientation, V, Omega, slip, gap, arm, speed)
 
     def scale(self, system: RollingSystem) -> float:
         """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""
