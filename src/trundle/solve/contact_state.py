@@ -41,15 +41,19 @@ class ContactState:
     @staticmethod
     def at(state: State, contact: Contact) -> ContactState:
         """Return the same for a contact that is known."""
-        q, centre = Quaternion(*state.orientation), Vector(*state.position)
+        gap = (Vector(*state.position) + contact.offset - contact.point).dot(contact.normal)
+        return ContactState._moving(
+            state, contact, Quaternion(*state.orientation), as_float(gap), contact.offset.norm()
+        )
+
+    @staticmethod
+    def _moving(state: State, contact: Contact, q: Quaternion, gap: float, arm: float) -> ContactState:
+        """Return a body that moves as its state says where the geometry is known."""
         V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
-        gap = (centre + contact.offset - contact.point).dot(contact.normal)
-        arm = contact.offset.norm()
         u, turning = contact.support.material_velocity(contact.point), contact.support.angular_velocity
         speed = max(V.norm(), Omega.norm() * arm, u.norm(), turning.norm() * arm)
-        return ContactState(
-            state, contact, q, V, Omega, contact.slip_velocity(V, Omega), as_float(gap), arm, float(value_of(speed))
-        )
+        slip = V + Omega.cross(contact.offset) - u
+        return ContactState(state, contact, q, V, Omega, slip, gap, arm, float(value_of(speed)))
 
     @property
     def nearest(self) -> Vector:
@@ -74,7 +78,7 @@ class ContactState:
         was = self.state
         state = State(was.position, floats(V), floats(Omega), was.orientation, was.time, coordinates)
         if coordinates == self.state.support:  # which is all of the motion that the geometry of touch depends on
-            return ContactState.at(state, self.contact)
+            return ContactState._moving(state, self.contact, self.orientation, self.gap, self.arm)
         return ContactState.of(system, state, self.contact.point)
 
     def over(self, gap: float) -> ContactState:

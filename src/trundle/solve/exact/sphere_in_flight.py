@@ -146,14 +146,8 @@ class SphereInFlight(ClosedForm):
 
     def _gap(self) -> list[float]:
         """Return the coefficients of a polynomial of the time that has the sign of the gap, constant first."""
-        r, V, A = (
-            Vector(*(float(part) * on for part, on in zip(vector, self.across, strict=True)))
-            for vector in (
-                [p - c for p, c in zip(self.position, self.middle, strict=True)],
-                self.velocity,
-                [f / self.mass for f in self.force],
-            )
-        )
+        place = Vector(*self.position) - Vector(*self.middle)
+        r, V, A = map(self._across, (place, Vector(*self.velocity), Vector(*self.force) / self.mass))
         ell = float(self.radius if self.distance is None else self.distance)
         # A body that stands still where a support turns under it has a velocity of what rounding leaves of Ω×ρ.
         speed = max(Vector(*self.velocity).norm(), self.radius * Vector(*self.angular_velocity).norm())
@@ -169,6 +163,11 @@ class SphereInFlight(ClosedForm):
                 break
             f[i] = 0.0
         return f
+
+    def _across(self, v: Vector) -> Vector:
+        """Return the part of a vector across the support, of floats."""
+        x, y, z = self.across
+        return Vector(float(v.x) * x, float(v.y) * y, float(v.z) * z)
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
