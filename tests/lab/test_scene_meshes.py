@@ -1,6 +1,7 @@
 """The drawn body is the body, and the drawn support is the surface that is rolled on."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -39,9 +40,19 @@ def crossed(mesh):
     return np.cross(q - p, r - p)
 
 
-@pytest.mark.parametrize("name", BODIES)
-def test_a_body_is_closed_and_faces_outwards(name):
-    mesh = body_mesh(BODIES[name])
+COARSE = [name for name, body in BODIES.items() if body_mesh(body).coarse is not None]
+
+
+def meshes():
+    """Each body, and those that have it again with fewer triangles."""
+    yield from ((body_mesh(body), name) for name, body in BODIES.items())
+    for name in COARSE:
+        mesh = body_mesh(BODIES[name])
+        yield replace(mesh, triangles=mesh.coarse), f"{name}, coarse"
+
+
+@pytest.mark.parametrize("mesh", [pytest.param(mesh, id=name) for mesh, name in meshes()])
+def test_a_body_is_closed_and_faces_outwards(mesh):
     edges = Counter()
     for i, j in ((0, 1), (1, 2), (2, 0)):
         edges.update(map(tuple, merged(mesh)[:, [i, j]].tolist()))
@@ -53,6 +64,17 @@ def test_a_body_is_closed_and_faces_outwards(name):
     assert np.all(facing > 0)
     assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1, rtol=0, atol=1e-12)
     assert len(mesh.vertices) < 3000
+
+
+@pytest.mark.parametrize("name", COARSE)
+def test_the_coarse_triangles_of_a_body_are_fewer_and_take_in_as_much(name):
+    mesh = body_mesh(BODIES[name])
+    fine, coarse = (
+        np.sum(np.sum(part.vertices[part.triangles[:, 0]] * crossed(part), axis=1)) / 6
+        for part in (mesh, replace(mesh, triangles=mesh.coarse))
+    )
+    assert len(mesh.coarse) < 0.35 * len(mesh.triangles)
+    assert 0.98 * fine < coarse <= fine * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("name", ["ball", "eccentric", "ellipsoid", "hemisphere", "rounded disc", "egg"])
