@@ -93,10 +93,9 @@ def _convex(shape: Shape) -> Mesh:
 
 
 def _coarse(x: Array, nu: Array) -> NDArray[np.uint32]:
-    """Return triangles over every other row and column of the grid, with the edge of a face across the axis."""
-    rows = np.unique([*range(0, _ROWS + 1, 2), 1, _ROWS - 1])
-    kept = (rows[:, None] * (_AROUND + 1) + np.arange(0, _AROUND + 1, 2)).ravel()
-    return oriented(x, nu, kept[grid_triangles(rows.size, _AROUND // 2 + 1)].astype(np.uint32))
+    """Return triangles over every other row and column of the grid."""
+    kept = np.arange(len(x)).reshape(_ROWS + 1, _AROUND + 1)[::2, ::2]
+    return oriented(x, nu, kept.ravel()[grid_triangles(*kept.shape)].astype(np.uint32))
 
 
 def _directions(shape: Shape) -> Array:
