@@ -67,13 +67,12 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     """
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
-    answers = [response(system, contact, J, e).slip for e in basis]
-    M = Matrix(*(Vector(*(as_float(answer.dot(d)) for answer in answers)) for d in basis))
+    M = Matrix(*(_along(basis, response(system, contact, J, e).slip) for e in basis)).transpose
     mu = math.inf if system.support.friction is None else as_float(system.support.sliding_friction)
-    begin = Vector(*(as_float(slip.dot(d)) for d in basis))
+    begin = _along(basis, slip)
     shares = as_float(system.support.restitution), as_float(system.support.tangential_restitution)
-    parts = _Course(M, mu, *shares, begin).impulse()
-    P = sum((d * part for d, part in zip(basis, parts, strict=True)), start=ZERO)
+    (x, y, z), (first, second, n) = _Course(M, mu, *shares, begin).impulse(), basis
+    P = first * x + second * y + n * z
     motion = system.support.motion
     axle = -contact.support.lever(contact.point).dot(P) / motion.inertia if motion.free else 0.0
     return Impact(P, P / system.body.mass, J.solve(contact.offset.cross(P)), axle)
@@ -147,6 +146,12 @@ def _basis(n: Vector) -> tuple[Vector, Vector, Vector]:
     first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
     first = first / first.norm()
     return first, n.cross(first), n
+
+
+def _along(basis: tuple[Vector, Vector, Vector], v: Vector) -> Vector:
+    """Return a vector's parts along a basis."""
+    first, second, n = basis
+    return Vector(as_float(v.dot(first)), as_float(v.dot(second)), as_float(v.dot(n)))
 
 
 def _length(v: Vector) -> Any:

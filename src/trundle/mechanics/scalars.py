@@ -170,6 +170,11 @@ def namespace(*values: Any) -> Any:
     >>> namespace(4.0).sqrt(4.0)
     2.0
     """
+    for value in values:
+        if type(value) is not float:
+            break
+    else:  # asked at each root that plain numbers take
+        return _Python
     others = [value for value in leaves(values) if type(value) is not float and not is_number(value)]
     if not others:
         return _Python
