@@ -80,8 +80,8 @@ ORIENTATION = (
     Mutant(
         "closed form: a straight turn 1 % too far",
         "solve.closed_form",
-        "half, q = np.broadcast_to(0.5 *",
-        "half, q = np.broadcast_to(0.505 *",
+        "half, q = 0.5 * angle",
+        "half, q = 0.505 * angle",
         "cylinder_exactly",
     ),
 )
