@@ -116,7 +116,7 @@ def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, durati
 
 def _event_names(system: RollingSystem, now: PhaseStart) -> tuple[str, ...]:
     """Return the names of a law's events, which are the same wherever it begins; they are asked for once."""
-    key = _event_names, type(now.law), *sorted(vars(now.law).items()), len(now.event_parameters)
+    key = _event_names, now.law.identity, len(now.event_parameters)
     if key not in system._known:
         system._known[key] = tuple(now.law.event_functions(system, now.time, now.state_vector, now.event_parameters))
     found: tuple[str, ...] = system._known[key]

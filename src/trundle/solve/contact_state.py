@@ -52,7 +52,7 @@ class ContactState:
         V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
         u, turning = contact.support.material_velocity(contact.point), contact.support.angular_velocity
         speed = max(V.norm(), Omega.norm() * arm, u.norm(), turning.norm() * arm)
-        slip = V + Omega.cross(contact.offset) - u
+        slip = contact.slip_velocity(V, Omega)
         return ContactState(state, contact, q, V, Omega, slip, gap, arm, float(value_of(speed)))
 
     @property

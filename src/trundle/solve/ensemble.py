@@ -257,7 +257,7 @@ class _Compiled:
     def chosen(self, system: RollingSystem, law: Law, state: Sequence[float]) -> tuple[Lowered, str]:
         """Return a law in the chart of fewest operations around a state."""
         among = charts(system, law)
-        one = (type(law), *vars(law).items(), among)
+        one = law.identity, among
         if one not in self.known:
             with self.lock:
                 self.known[one] = integrators.ready_in(system, law, self.tolerance, self.zeros, among)
@@ -432,7 +432,7 @@ class _Company:
             self.broken.append(member.index)
         elif goes_on:
             law = member.now.law
-            by = type(law), *vars(law).items(), member.lowered.chart
+            by = law.identity, member.lowered.chart
             self.waiting.setdefault(by, deque()).append(member)
         else:
             self.events[member.index] = member.events

@@ -84,7 +84,7 @@ def ready_in(
 ) -> list[tuple[Lowered, str]]:
     """Return a law in each of some charts, those of fewest operations first, with the name of what comes of it."""
     memory = _memory().ready
-    structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance, zeros, among)
+    structure: Any = (structure_of(system), law.identity, tolerance, zeros, among)
     try:
         known = memory.get(structure)
     except TypeError:  # a part of one's own that cannot be hashed, and so may change

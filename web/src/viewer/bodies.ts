@@ -64,7 +64,7 @@ export class BodyModel {
     this.paint.plain.value = scene.header.body.kind === 'charge' ? 1 : 0
     const { body_vertices: vertices, body_normals: normals, body_triangles: triangles } = scene.columns
     if (sameNumbers(before.body_vertices, vertices)) return
-    if (vertices && normals === before.body_normals && triangles === before.body_triangles) {
+    if (vertices && normals && normals === before.body_normals && triangles === before.body_triangles) {
       const place = this.mesh.geometry.getAttribute('position') as BufferAttribute // only larger: the rest is there
       place.copyArray(vertices).needsUpdate = true
       this.mesh.geometry.computeBoundingSphere()
@@ -77,11 +77,11 @@ export class BodyModel {
 
   /** Draw a picture of few pixels with fewer triangles: a processor that draws takes as long for them as for pixels. */
   private thin(renderer: WebGLRenderer): void {
-    const fine = this.scene.columns.body_triangles?.length
-    const coarse = this.scene.columns.body_coarse?.length
-    if (fine === undefined || coarse === undefined) return
+    const { geometry } = this.mesh
+    const { fine, coarse } = geometry.userData as { fine?: number; coarse?: number }
+    if (!fine || !coarse) return
     const few = renderer.getPixelRatio() < pixelsPerPoint()
-    this.mesh.geometry.setDrawRange(few ? fine : 0, few ? coarse : fine)
+    geometry.setDrawRange(few ? fine : 0, few ? coarse : fine)
   }
 
   get radius(): number {
@@ -156,6 +156,7 @@ function bodyGeometry({ header, columns }: Scene): BufferGeometry {
   index.set(fine)
   index.set(coarse, fine.length)
   geometry.setDrawRange(0, fine.length)
+  geometry.userData = { fine: fine.length, coarse: coarse.length }
   return geometry.setIndex(new BufferAttribute(index, 1))
 }
 

@@ -100,6 +100,11 @@ class Law:
         """Return the pull that lifts nothing off, N, and the numbers that end slip or turning."""
         return (event_parameters[0], event_parameters[1:]) if self.weightless else (0.0, event_parameters)
 
+    @property
+    def identity(self) -> tuple[Any, ...]:
+        """What tells it from other laws: its class, and its settings by name."""
+        return type(self), *vars(self).items()
+
     def names(self, system: RollingSystem) -> tuple[str, ...]:
         """Return the names of all numbers of the state."""
         return (*self.variables, *(f"support_{name}" for name in system.support.motion.coordinates))

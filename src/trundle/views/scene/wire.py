@@ -50,8 +50,8 @@ class Scene:
 def pack(scene: Scene, known: Collection[str] | None = None) -> bytes:
     """Return a scene as bytes.
 
-    `known`: the names of meshes that whoever reads it has from before. Its own are named then, under `meshes` in the
-    header with their size, and those that are known, if in another size, are left out.
+    `known`: the names of meshes that whoever reads it has from before. Then the header names the scene's own under
+    `meshes`, with their size, and those that are known, be it in another size, are left out.
 
     Examples
     --------
