@@ -179,9 +179,11 @@ class _Course:
 
     def impulse(self) -> Vector:
         """Return the whole impulse, N s."""
+        if self.tangential_restitution == 0:
+            return self._to_the_end()
         ending = self._ending()
         total = self._to_the_end()
-        return total + self._given_back(ending) if self.unused * self.tangential_restitution > 0 else total
+        return total + self._given_back(ending) if self.unused > 0 else total
 
     def _ending(self) -> Vector:
         """Return the impulse along the support that ends the slip by itself, N s."""
@@ -307,7 +309,8 @@ class _Course:
         sigma = _length(self.slip)
         c, s = self.slip.x / sigma, self.slip.y / sigma
         change = self.M @ Vector(-self.mu * c, -self.mu * s, 1.0)
-        if abs(c * change.y - s * change.x) > _STRAIGHT * max(row.norm() for row in self.M.rows):
+        turns = abs(c * change.y - s * change.x)
+        if turns and turns > _STRAIGHT * max(row.norm() for row in self.M.rows):
             return self._curved(size)
         return self._straight_on()
 

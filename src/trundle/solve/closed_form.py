@@ -69,9 +69,9 @@ def integrate(
     else:
         reached = now.time + found[0]
         kept, _ = cut(times, reached)
-        q = orientations(form, start, np.append(kept, reached))
-        at = _place(system, law, form, start, found[0], q[-1])
-        stop, q = ZeroCrossing(reached, found[1], np.array(law.state_vector(at), dtype=float), at), q[:-1]
+        q, there = _orientations_to(form, start, kept, reached)
+        at = _place(system, law, form, start, found[0], there)
+        stop = ZeroCrossing(reached, found[1], np.array(law.state_vector(at), dtype=float), at)
     along = ClosedFormSegment(law, form, start.time, start.support, together=kept.size <= _SHORT)
     last = max(kept.size - 1, 0) // AT_ONCE * AT_ONCE
     for first in range(0, last, AT_ONCE):
@@ -84,15 +84,13 @@ def integrate(
         progress(end if stop is None else stop.time)
 
 
-def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: float, q: Array) -> ContactState:
+def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: float, q: Quaternion) -> ContactState:
     """Return the body where the form takes it in a time, with the orientation there."""
     (r, V, Omega, _), grown = form.motion_and_support_at(t)
     coordinates = tuple(float(of_start + gone) for of_start, gone in zip(start.support, grown, strict=True))
-    time, (w, x, y, z) = start.time + t, q.tolist()
-    state = State(floats(r), floats(V), floats(Omega), (w, x, y, z), time, coordinates)
-    return ContactState.of(
-        system, state, _contact(system, law, time, Vector(*state.position), Quaternion(w, x, y, z), coordinates)
-    )
+    time = start.time + t
+    state = State(floats(r), floats(V), floats(Omega), (q.w, q.x, q.y, q.z), time, coordinates)
+    return ContactState.of(system, state, _contact(system, law, time, Vector(*state.position), q, coordinates))
 
 
 # What ends a stretch
@@ -103,8 +101,8 @@ def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, durati
     names = _event_names(system, now)
     known = {name: t for name, t in form.ends_at.items() if name in names and 0 <= t <= duration}
     sooner = min(((t, name) for name, t in known.items()), default=None)
-    given = {*form.ends_at, *(f"near {name}" for name in form.ends_at), *form.impossible_events}
-    asked = [name for name in names if name not in given]
+    given = form.ends_at.keys() | form.impossible_events
+    asked = [name for name in names if name not in given and name.removeprefix("near ") not in form.ends_at]
     if not asked:
         return sooner
     upto = min(duration if sooner is None else sooner[0], 1.01 * max(form.repeats(name) for name in asked))
@@ -252,6 +250,18 @@ def _point(system: RollingSystem, law: Law, contact: Contact, centre: Vector) ->
 def _under(system: RollingSystem, support: SupportState, n: Vector, centre: Vector) -> Vector:
     """Return the point of the support straight under the centre."""
     return centre - n * system.support.surface.level(support.local(centre))
+
+
+def _orientations_to(form: ClosedForm, start: State, times: Array, end: float) -> tuple[Array, Quaternion]:
+    """Return the orientations at some times, and at the end after them: alone where that is a formula of its own."""
+    straight = form.fixed_axis_rotation(end - start.time)
+    if straight is None:
+        q = orientations(form, start, np.append(times, end))
+        return q[:-1], Quaternion.of(q[-1].tolist())
+    axis, half = straight[0], 0.5 * straight[1]
+    turned = axis * math.sin(half)
+    there = Quaternion(*map(float, Quaternion(math.cos(half), *turned) * Quaternion(*start.orientation)))
+    return orientations(form, start, times) if times.size else np.empty((0, 4)), there
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:

@@ -490,5 +490,5 @@ def cut(times: Array, end: float) -> tuple[Array, Array]:
     >>> [part.tolist() for part in cut(np.array([0.0, 1.0, 2.0]), 1.0)]
     [[0.0], [1.0, 2.0]]
     """
-    count = int(np.searchsorted(times, end))
+    count = int(times.searchsorted(end))
     return times[:count], times[count:]

@@ -12,6 +12,7 @@ from typing import Any
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import Drag, Load, QuadraticDrag, RollingCouple, RollingResistance, constant_part
 from ...mechanics.motions import FreeAxle, Motion
+from ...mechanics.records import remembered
 from ...mechanics.scalars import is_number, is_zero
 from ...mechanics.surfaces import Surface
 from ...mechanics.system import RollingSystem
@@ -108,6 +109,7 @@ def linear_drag(load: Load) -> bool:
     return load.linear_drag is not None
 
 
+@remembered
 def constant_forces(system: RollingSystem) -> tuple[Vector, Vector]:
     """Return the sum of the constant loads, force and torque about the centre of mass, N and N m.
 
