@@ -252,14 +252,36 @@ def _in_full(answers: list[Response]) -> None:
 
 def at_rest(bench: Bench) -> np.ndarray:
     """The middle of the picture once it is drawn in full, from the place that the camera is put at."""
+    bench.settle()
+    from_the_start(bench)
+    return in_full(bench)
+
+
+def in_full(bench: Bench) -> np.ndarray:
+    """The middle of the picture once it is drawn in full."""
 
     def sharp() -> None:
         assert bench.stage.sharpness() == "1"
 
     bench.settle()
-    from_the_start(bench)
     eventually(bench.page, sharp)
     return bench.stage.middle()
+
+
+def test_a_run_that_leaves_the_picture_is_shown_whole_once_the_numbers_rest(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=bouncing-ball-with-backspin"))
+    bench.slide("body.radius", 0.6)
+    found = in_full(bench)
+    assert share(found, at_rest(bench)) < 0.001, "the camera was not put where it shows the run"
+
+
+def test_a_view_that_somebody_chose_stays(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=bouncing-ball-with-backspin"))
+    bench.stage.canvas.hover(position={"x": 150, "y": 220})
+    bench.page.mouse.wheel(0, -300)
+    bench.slide("body.radius", 0.6)
+    found = in_full(bench)
+    assert share(found, at_rest(bench)) > 0.02, "the camera was moved"
 
 
 def test_the_view_turns_comes_near_and_is_put_back(bench: Bench) -> None:

@@ -22,8 +22,15 @@ export function placesToShow(scenes: readonly Scene[], frame: Frame): Vector3[] 
       found.push(seen(view, seen(material, new Vector3().fromArray(vertices, i))))
     }
   }
-  for (const scene of scenes) found.push(...bodyPlaces(scene, at))
-  return found
+  return [...found, ...pathPlaces(scenes, frame)]
+}
+
+/** Those that hold the paths alone. */
+export function pathPlaces(scenes: readonly Scene[], frame: Frame): Vector3[] {
+  const [first] = scenes
+  if (!first) return []
+  const at = poses(first, frame)
+  return scenes.flatMap((scene) => bodyPlaces(scene, at))
 }
 
 function polar({ header }: Scene): boolean {

@@ -148,6 +148,12 @@ export class Stage {
     return { x: (at.x * 0.5 + 0.5) * this.width, y: (0.5 - at.y * 0.5) * this.height }
   }
 
+  /** Whether a place of the shown frame, m, is in the picture. */
+  sees(place: Vector3): boolean {
+    const at = projected.copy(place).multiplyScalar(this.space.scale.x).project(this.camera)
+    return Math.abs(at.x) <= 1 && Math.abs(at.y) <= 1 && at.z < 1
+  }
+
   /** How large, m, a CSS pixel is at a place of the support frame. */
   metresPerPixel(place: Vector3): number {
     const depth = this.root.localToWorld(projected.copy(place)).distanceTo(this.camera.position)

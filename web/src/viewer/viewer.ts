@@ -151,6 +151,7 @@ class StageViewer implements Viewer {
     say(this.note, this.world?.support?.note ?? '')
     put(this.canvas, 'aria-label', saidOf(scenes))
     if (!keep && scenes.length) this.resetCamera()
+    else if (options.rests && this.lost) this.aim(this.fromTop)
     this.controls?.refresh()
     if (options.rests) this.sharpness?.rest()
     // At once: the picture is made while the page does what else there is to do for the new runs.
@@ -334,6 +335,11 @@ class StageViewer implements Viewer {
   }
   topView(): void {
     this.aim(true)
+  }
+
+  /** Whether the runs have left the picture, and nobody has chosen what it shows. */
+  private get lost(): boolean {
+    return !this.followed && this.stage?.moved === false && this.world?.strays === true
   }
 
   private aim(top: boolean): void {

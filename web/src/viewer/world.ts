@@ -5,7 +5,7 @@ import { type LegendRow, type Scales, scalesOf, steadyScales } from './arrows'
 import type { BodyModel } from './bodies'
 import type { Frame, Show, ViewerOptions } from './contract'
 import { newPose, seen, viewOf } from './frames'
-import { directionFor, extent, placesToShow } from './framing'
+import { directionFor, extent, pathPlaces, placesToShow } from './framing'
 import { Axes, Fields, Sketch } from './guides'
 import type { LabelLayer } from './labels'
 import { contactNormal } from './normals'
@@ -17,6 +17,7 @@ import { fadingTime } from './trail'
 
 const THICK = 0.0085 // radius of an arrow's shaft, of what is shown
 const SMALL = 6 // CSS pixels: a body of a smaller radius is hard to see
+const STRAYED = 0.1 // share of what holds the paths that may be out of the picture
 
 export class World {
   readonly axes = new Axes()
@@ -104,6 +105,13 @@ export class World {
     this.support?.resize(width, height)
     this.sketch.line.resize(width, height)
     for (const actor of this.actors) actor.resize(width, height)
+  }
+
+  /** Whether a good part of the paths is out of the picture. */
+  get strays(): boolean {
+    const places = pathPlaces(this.scenes, this.frame)
+    this.stage.camera.updateMatrixWorld()
+    return places.filter((place) => !this.stage.sees(place)).length > STRAYED * places.length
   }
 
   resetCamera(top = false): void {
