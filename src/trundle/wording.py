@@ -19,6 +19,17 @@ class Unit:
     symbol: str
     least: float = 1.0  # the least count of it for which it is taken
 
+    def after(self, digits: str) -> str:
+        """Return a number's digits with it behind them.
+
+        Examples
+        --------
+        >>> Unit(1e-3, "mm").after("2.5"), Unit(1e-15, "10⁻¹⁵ m").after("2.5"), Unit(1.0, "").after("2.5")
+        ('2.5 mm', '2.5·10⁻¹⁵ m', '2.5')
+        """
+        between = "" if self.symbol in ("", "°") else "·" if self.symbol.startswith("10") else " "
+        return f"{digits}{between}{self.symbol}"
+
 
 # Size in SI, symbol, and the least count of it for which it is taken; from large to small.
 _Units = tuple[tuple[float, str, float], ...]
@@ -102,7 +113,7 @@ def with_unit(value: float, kind: str, digits: int = 3) -> str:
     ('36.8 cm/s', '2.5 cm')
     """
     unit = unit_for(abs(value), kind)
-    return f"{short(value / unit.scale, digits)} {unit.symbol}".strip()
+    return unit.after(short(value / unit.scale, digits))
 
 
 def small_length(size: Any) -> str:

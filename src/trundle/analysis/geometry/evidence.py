@@ -26,7 +26,6 @@ _EPSILON = 2.0**-52
 _TOLERANCE, _SOLVER = 1e-12, 1e3  # asked of Runge-Kutta, and how many times it may be missed
 _PIECES, _WINDOWS = 60, 3  # looked at, and places looked at in each
 _NODES, _WINDOW = 12, 0.5  # samples in a place, and how far the ball turns there at most, rad
-_SMALL = 3.0  # radii of the ball; loops of a shorter way round are small
 _NAMES = ("along +x", "along +y", "up", "along −x", "along −y", "down")
 _MOST_RADIANS, _MOST_POLYNOMIALS = 500.0, 60  # of a curve that Runge-Kutta follows
 
@@ -204,7 +203,7 @@ def facts(rolled: RolledPath) -> Iterator[CardFigure]:
     area, small = float(rolled.enclosed_area or 0.0), float(rolled.small_loop_angle or 0.0)
     yield CardFigure("area enclosed", area, "m²", note="positive anticlockwise, once for each time round")
     note = "what a small loop turns it by, about the normal"
-    if turned < _SMALL and small:
+    if rolled.is_small_loop and small:
         note += f"; it did by {rotation.angle / abs(small):.4g} of that, its path {turned:.3g} a long"
     yield CardFigure("−area/a²", small, "rad", note=note)
 

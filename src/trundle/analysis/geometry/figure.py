@@ -232,7 +232,7 @@ def _row(ax: Axes, one: _Shown, width: float) -> None:
         x = first + k * pitch
         _patch(ax, x, radius, ASIDE)
         place(ax, (x, 0.0), radius, radius * _RADIUS, one.at.orientation[i], ASIDE)
-        name = one.names[i] or f"{short(one.at.distance[i] / unit.scale, 3)} {unit.symbol}"
+        name = one.names[i] or unit.after(short(one.at.distance[i] / unit.scale, 3))
         text = ax.text(x, -1.85, name)
         text.set(ha="center", va="bottom", fontsize=9, color=INK if one.names[i] else GREY)
 

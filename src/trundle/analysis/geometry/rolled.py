@@ -35,6 +35,7 @@ _MOST_SAMPLES = 10_000_000
 _CLOSED = 1e-9  # how near to its beginning a path must end to be closed, as a share of its length
 _EPSILON = 2.0**-52
 _ROUNDING = 8.0  # units in the last place lost for each radian, piece and step
+_SMALL = 3.0  # radii of the ball; loops of a shorter way round are small
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -234,13 +235,21 @@ class RolledPath(Plottable):
     @property
     def enclosed_area(self) -> float | None:
         """The area inside a closed path, m²: positive anticlockwise, counted once for each time round; else None."""
-        return self._laid.area if self.is_closed else None
+        if not self.is_closed:
+            return None
+        area = self._laid.area
+        return area if abs(area) > _ROUNDING * _EPSILON * self.length**2 else 0.0  # as of a figure of eight
 
     @property
     def small_loop_angle(self) -> float | None:
         """The angle about the normal by which a small loop turns the ball, −A/a² (G4), rad; None if not closed."""
         area = self.enclosed_area
-        return None if area is None else -area / self.radius / self.radius
+        return None if area is None else 0.0 - area / self.radius / self.radius
+
+    @property
+    def is_small_loop(self) -> bool:
+        """Whether it is closed and short beside the ball: `small_loop_angle` is right to some hundredths."""
+        return self.is_closed and self.length < _SMALL * self.radius
 
     @property
     def error_bound(self) -> float:

@@ -18,7 +18,6 @@ from .rolled import RolledPath
 
 _FINEST = math.radians(3.0)  # turned between two samples: what an eye takes for smooth
 _FEWEST = 200
-_SMALL = 0.3  # rad of a turn up to which the formula for small loops says something
 _PACE = 0.25  # turns of the ball in a second, unless that makes a scene too short or too long
 _SHORTEST, _LONGEST = 2.0, 30.0  # s
 
@@ -79,6 +78,7 @@ def _turned(rolled: RolledPath, pace: float) -> dict[str, Any]:
         "turned_axis": turn.axis,
         "turned_about_normal": turn.about_normal,
         "enclosed_area": rolled.enclosed_area,
+        "small_loop": rolled.is_small_loop,
         "small_loop_angle": rolled.small_loop_angle,
         "north_pole": rolled.north_pole,
         "stages": told,
@@ -87,27 +87,31 @@ def _turned(rolled: RolledPath, pace: float) -> dict[str, Any]:
 
 
 def _findings(rolled: RolledPath) -> list[Finding]:
-    small, turn = rolled.small_loop_angle, rolled.rotation
+    turn = rolled.rotation
     found = [Finding("Angle by which the ball is turned", r"\theta", None, turn.angle, "rad", note="about one axis")]
-    if small is not None:
+    if rolled.is_closed:
+        small = rolled.small_loop_angle if rolled.is_small_loop else None
         note = "predicted for a loop that is small beside the ball"
-        found.append(Finding("Of it, about the normal", r"\psi", small, turn.about_normal, "rad", note=note))
+        psi = turn.about_normal if abs(turn.about_normal) > rolled.error_bound else 0.0
+        found.append(
+            Finding("Of it, about the normal", r"\psi", small, psi, "rad", note=note, scale=None if small else 1.0)
+        )
         found.append(Finding("Enclosed area", "A", None, rolled.enclosed_area, "m²", note="anticlockwise is positive"))
     return found
 
 
 def _headline(rolled: RolledPath) -> Headline:
-    small, turn = rolled.small_loop_angle, rolled.rotation
-    if small is None:
-        return Headline("turns the ball by {}", "rad", turn.angle, None, False, "about one axis")
-    how = "about the normal: by the area that a small loop encloses; and by all turns one after the other"
-    small = small if abs(small) < _SMALL else None
-    return Headline("comes home turned by {}", "rad", turn.about_normal, small, True, how)
+    angle = rolled.rotation.angle
+    if not rolled.is_closed:
+        return Headline("turns the ball by {}", "rad", angle, None, False, "about one axis")
+    small = abs(rolled.small_loop_angle or 0.0) if rolled.is_small_loop else 0.0
+    how = "by the area that a small loop encloses; and by all turns one after the other" if small else "about one axis"
+    return Headline("comes home turned by {}", "rad", angle, small or None, bool(small), how)
 
 
 def _formula(rolled: RolledPath) -> dict[str, str] | None:
     area, small = rolled.enclosed_area, rolled.small_loop_angle
-    if area is None or small is None:
+    if not rolled.is_small_loop or area is None or small is None:
         return None
     numbers = rf"\psi \approx -\frac{{{quantity(area, 'm^2')}}}{{({quantity(rolled.radius, 'm')})^2}}"
     return {

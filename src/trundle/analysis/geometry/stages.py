@@ -56,7 +56,7 @@ class Stages(Displayed):
         rows = []
         for i, (place, pole) in enumerate(zip(self.contact / unit.scale, self.north_pole, strict=True)):
             x, y = (float(f"{round(float(part), 9):.4g}") + 0.0 for part in place)
-            rows.append((f"stage {i}" if i else "start", f"({x:g}, {y:g}) {unit.symbol}", direction(pole)))
+            rows.append((f"stage {i}" if i else "start", unit.after(f"({x:g}, {y:g})"), direction(pole)))
         half = MOST_TOLD // 2
         return rows if len(rows) <= MOST_TOLD else [*rows[:half], ("...", "", ""), *rows[-half:]]
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trundle.wording import unit_for
+from trundle.wording import Unit, unit_for
 
 from ...mechanics.algebra import Vector
 from ...mechanics.quantities import angle_between, is_ball
@@ -53,15 +53,13 @@ class Headline:
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as a scene's header holds it: in words, both numbers in the unit that suits them."""
-        scale, symbol = 1.0, self.unit
+        unit = Unit(1.0, self.unit)
         if self.unit in KINDS:
-            found = unit_for(abs(self.measured) if abs(self.measured) >= _NOTHING else 1.0, KINDS[self.unit])
-            scale, symbol = found.scale, found.symbol
+            unit = unit_for(abs(self.measured) if abs(self.measured) >= _NOTHING else 1.0, KINDS[self.unit])
 
         def said(value: float) -> str:
             value = 0.0 if abs(value) < _NOTHING else value
-            digits = f"{value / scale:.4g}".replace("-", "−")
-            return f"{digits}{symbol}" if symbol in ("", "°") else f"{digits} {symbol}"
+            return unit.after(f"{value / unit.scale:.4g}".replace("-", "−"))
 
         return {
             "said": self.text,

@@ -19,8 +19,6 @@ const GRAIN = 0.002
 /** The server rolls along no more. */
 const MOST_PIECES = 500
 const SECONDS_A_PIECE = 0.7
-/** Up to here the area rule holds to a tenth or so, rad. */
-const SMALL = 0.5
 /** Of what the camera takes in at the start, m; beyond it the view is set anew. */
 const IN_VIEW = 5 * RADIUS
 /** A way to either side: what the camera is set by before anything has been rolled. */
@@ -237,7 +235,7 @@ function inRadii(length: number): string {
 }
 
 /** The rule for small loops is set beside the angle only where the loop is small. */
-function areaRows({ enclosed_area, small_loop_angle, turned_about_normal }: Rolled): Row[] {
+function areaRows({ enclosed_area, small_loop, small_loop_angle, turned_about_normal }: Rolled): Row[] {
   if (enclosed_area === null || small_loop_angle === null) return []
   const area: Row = {
     name: 'area enclosed, anticlockwise',
@@ -245,7 +243,7 @@ function areaRows({ enclosed_area, small_loop_angle, turned_about_normal }: Roll
     predicted: null,
     measured: Number((enclosed_area / RADIUS ** 2).toFixed(6)) + 0,
   }
-  if (Math.abs(small_loop_angle) > SMALL) return [area]
+  if (!small_loop) return [area]
   const turned = degrees(turned_about_normal)
   return [
     area,

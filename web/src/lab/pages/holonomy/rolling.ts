@@ -22,6 +22,8 @@ export interface Rolled {
   closed: boolean
   /** Positive anticlockwise; null where the path is open. */
   enclosed_area: number | null
+  /** Whether it is so short beside the ball that the rule for small loops tells something. */
+  small_loop: boolean
   small_loop_angle: number | null
   length: number
   stages: { time: number; position: Vector; orientation: [number, number, number, number]; north_pole: Vector }[]
