@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import trundle as tr
+from trundle.scenario import files
 from trundle.solve.exact.finding import Finding
 from trundle.solve.samples import Samples
 from trundle.views.scene import scene_of
@@ -164,3 +165,31 @@ def test_curves_come_only_where_they_are_asked_for():
     assert plain.header["curves"] == []
     assert {one["column"] for one in full.header["curves"]} == set(full.columns) - set(plain.columns)
     assert all(full.columns[one["column"]].shape == full.columns["time"].shape for one in full.header["curves"])
+
+
+CHANGES = [
+    ("eulers-disc", ("start", "velocity"), ["0 m/s", "0.1 m/s"]),
+    ("eulers-disc", ("start", "attitude"), ["0 deg", "7.5 deg", "0 deg"]),
+    ("eulers-disc", ("support", "tilt"), "-12 deg"),
+    ("eulers-disc", ("body", "radius"), "18.75 mm"),
+    ("coin-in-a-circle", ("body", "mass"), "20 g"),
+    ("rattleback", ("body", "mass"), "20 g"),
+    ("tippe-top", ("body", "mass"), "20 g"),
+]
+
+
+@pytest.mark.parametrize("every", ["40 ms", "5 ms", "1 ms"])
+@pytest.mark.parametrize(("name", "key", "value"), CHANGES)
+def test_what_too_few_samples_cannot_tell_is_not_told(name, key, value, every):
+    """Where something goes round faster than it is sampled, two ways of counting differ, and neither is right."""
+    tables = files.tables_of(name)
+    tables[key[0]][key[1]] = value
+    told = {}
+    for step in (every, "0.25 ms"):
+        tables["run"] = {**tables["run"], "duration": "3 s", "every": step}
+        run = tr.Scenario.read(tables).run(tolerance=1e-9)
+        told[step] = headline_of(run.system, run.samples, ())
+    coarse, fine = told[every], told["0.25 ms"]
+    if coarse is None or coarse["said"] != fine["said"]:
+        return  # nothing is told, or something else
+    assert number(coarse["text"]) == pytest.approx(number(fine["text"]), rel=0.02)

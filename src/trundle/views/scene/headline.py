@@ -31,6 +31,8 @@ _LEAST_ROUNDS = 2.0
 _BOTH = "by its closed form; and from the samples"
 _EVEN = 0.03  # by which the times of an oscillation differ, and it still has a period
 _NODS = 0.3  # degrees through which an axis has to nod
+_UNTOLD = 0.25  # turns between two samples by which two ways of counting part where these are too far apart to tell
+_CUT_OFF = 0.01  # share of a path that its chords may cut off
 _MOVES = 1e-3  # of the body's own size that a centre has to go
 
 
@@ -147,6 +149,8 @@ def _rounds(system: RollingSystem, at: Samples) -> Iterator[Headline]:
     if not ((leans > _NODS) & (leans < 180.0 - _NODS)).all():
         return
     rounds = [(way - way[0]) / (2 * math.pi) for way in _headings(at, up, axis)]
+    if np.max(np.abs(np.diff(rounds[0] - rounds[1]))) > _UNTOLD:
+        return
     first, other = (abs(float(way[-1])) for way in rounds)
     if first < _LEAST_ROUNDS:
         return
@@ -326,9 +330,11 @@ def _even(times: Array) -> bool:
 
 def _way(at: Samples) -> Iterator[Headline]:
     """Tell how far it goes."""
-    chords = float(np.linalg.norm(np.diff(at.position, axis=0), axis=1).sum())
-    speed = np.linalg.norm(at.velocity, axis=1)
-    if not chords:
+    steps = np.linalg.norm(np.diff(at.position, axis=0), axis=1)
+    speed, chords = np.linalg.norm(at.velocity, axis=1), float(steps.sum())
+    bends = angle_between(Vector.of(at.velocity[:-1]), Vector.of(at.velocity[1:]))
+    # A chord of an arc that turns by θ is shorter by the share θ²/24.
+    if not chords or np.sum(steps * np.radians(bends) ** 2) / 24 > _CUT_OFF * chords:
         return
     duration = float(at.time[-1] - at.time[0])
     how = "along its path: from sample to sample; and by the integral of its speed"
