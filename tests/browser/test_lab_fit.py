@@ -21,6 +21,7 @@ TWICE = {"width": 683, "height": 384}
 TWICE_HALL = {"width": 960, "height": 540}
 FOUR_TIMES = {"width": 341, "height": 192}
 NARROW: tuple[Any, ...] = (PHONE, SIDEWAYS, TABLET, TWICE_HALL, FOUR_TIMES)
+SLIM = {"width": 1100, "height": 640}  # its panels are the narrowest
 LOW: tuple[Any, ...] = (SIDEWAYS, TWICE, TWICE_HALL)
 
 # What reaches beyond the window's right edge, unless something that scrolls or clips holds it; and each table that is
@@ -175,3 +176,28 @@ def test_nothing_must_be_scrolled_to_the_side_tables_keep_their_last_column_and_
         if root > 0 or cut or over:
             found.append(f"{size}: {root} pixels to the side, tables {cut}, buttons over each other {over}")
     assert not found, "\n".join(found)
+
+
+# The widest numbers that the table shows, and how near those of a row then come to each other, CSS pixels.
+LONG_NUMBERS = """() => {
+    const rows = [...document.querySelectorAll('.findings-rows tbody tr')].map((row) => [...row.querySelectorAll('td')])
+    const box = (cell) => {
+        const inside = document.createRange()
+        inside.selectNodeContents(cell)
+        return inside.getBoundingClientRect()
+    }
+    return rows.flatMap((cells) => {
+        ;['-4.025×10⁻¹⁴', '-1.602×10⁻¹⁵', '1.1×10⁻¹⁶'].forEach((text, i) => { cells[i].textContent = text })
+        return cells.slice(1).map((cell, i) => box(cell).left - box(cells[i]).right)
+    })
+}"""
+
+
+@pytest.mark.parametrize("size", [PHONE, TABLET, TWICE_HALL, SLIM, LAPTOP], ids=lambda size: str(size["width"]))
+def test_long_numbers_keep_apart(size: Any, kept: Page) -> None:
+    at(kept, "#/bench?name=tilted-turntable-straight", size)
+    kept.get_by_role("tab", name="Numbers").click()
+    expect(kept.locator(".findings-rows td").first).to_be_visible()
+    gaps = kept.evaluate(LONG_NUMBERS)
+    assert len(gaps) > 2
+    assert min(gaps) > 4
