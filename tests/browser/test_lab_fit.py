@@ -134,7 +134,7 @@ CUT_FORMULAS = """() => [...document.querySelectorAll('.math-block, .math')].fil
     return boxes.some((box) => box.right > right + 1 || box.left < left - 1)
 }).map((one) => one.querySelector('annotation')?.textContent)"""
 # The law that is computed by, and closed forms with long ones.
-LAWS = ("rattleback", "tilted-turntable", "loop-the-loop", "roll-off-a-sphere-slipping", "roll-figure-eight")
+LAWS = ("rattleback", "tilted-turntable", "loop-the-loop", "roll-off-a-sphere-slipping", "roll-small-loop")
 
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP, HALL], ids=["phone", "laptop", "projector"])
