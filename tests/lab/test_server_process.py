@@ -79,9 +79,10 @@ def within(seconds: float, true: Callable[[], bool]) -> bool:
 
 
 @contextmanager
-def running(*words: str, env: dict[str, str] | None = None) -> Iterator[Running]:
+def running(*words: str, env: dict[str, str] | None = None, folder: Path | None = None) -> Iterator[Running]:
     process = subprocess.Popen(  # noqa: S603
-        [sys.executable, "-m", "trundle", "lab", *words],
+        [Path(sys.executable).with_name("trundle"), "lab", *words],
+        cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -113,6 +114,17 @@ def test_it_answers_and_ends_with_all_its_processes(number: signal.Signals) -> N
         assert lab.gone(20)
         assert lab.process.returncode == 0
         assert told.endswith("The lab has ended.\n")
+
+
+def test_files_of_the_folder_that_one_is_in_are_not_taken_for_pythons_own(tmp_path: Path) -> None:
+    for name in ("random", "signal", "struct", "numpy", "statistics", "nt"):
+        (tmp_path / f"{name}.py").write_text(f"raise RuntimeError('{name} of the homework')\n")
+    with running("--no-open", "--port", "0", folder=tmp_path) as lab:
+        assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[1].startswith(b"TRUNDLE1")
+        os.killpg(lab.process.pid, signal.SIGINT)
+        told, _ = lab.process.communicate(timeout=60)
+    assert "homework" not in lab.said + told
+    assert "Traceback" not in lab.said + told
 
 
 def test_ctrl_c_at_once_and_again_ends_it_too() -> None:

@@ -265,3 +265,38 @@ def test_it_writes_over_nothing_and_shares_with_nobody(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "nothing"):
         with pytest.raises(tr.InvalidValueError, match="must be a store that a sweep wrote"):
             tr.Sweep.load(path)
+
+
+FEW = SLOW.replace("count = 240", "count = 4").replace("20 s", "0.1 s")
+WAYS = [["--workers", "2"], ["--workers", "2", "--scheduler", "local"]]
+MINE = """
+import sys
+import homework
+import trundle as tr
+if __name__ == "__main__":
+    options = {"workers": 2} if sys.argv[1] == "2" else {"workers": 2, "scheduler": "local"}
+    over = {"gravity": [9.8, 9.9, 10.0]}
+    found = tr.sweep("tilted-turntable", over, [homework.far, "end x"], duration=0.1, every=0.05, chunk=1, **options)
+    assert (found.dataset.far == found.dataset["end x"]).all()
+    print("done")
+"""
+
+
+@pytest.mark.parametrize("words", WAYS, ids=["processes", "dask"])
+def test_files_of_the_folder_that_one_is_in_are_not_taken_for_pythons_own(words: list[str], tmp_path: Path) -> None:
+    for name in ("random", "signal", "struct", "statistics", "nt"):
+        (tmp_path / f"{name}.py").write_text(f"raise RuntimeError('{name} of the homework')\n")
+    (tmp_path / "s.toml").write_text(FEW)
+    command = [Path(sys.executable).with_name("trundle"), "sweep", "s.toml", *words]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)  # noqa: S603
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("way", ["2", "dask"])
+def test_a_function_of_a_file_beside_ones_own_is_found_by_all_processes(way: str, tmp_path: Path) -> None:
+    (tmp_path / "homework.py").write_text("def far(run):\n    return float(run.position[-1, 0])\n")
+    (tmp_path / "mine.py").write_text(MINE)
+    command = [sys.executable, "mine.py", way]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)  # noqa: S603
+    assert done.stdout.strip() == "done", done.stderr

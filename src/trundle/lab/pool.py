@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from pebble import ProcessExpired, ProcessPool
 
+from ..processes import own_modules
 from .errors import refused
 from .niceness import computed
 from .settings import Settings
@@ -170,12 +171,13 @@ class _Context:
         self.made: list[BaseProcess] = []
         if copies:
             self._context.set_forkserver_preload([PRELOADED])
-            resource_tracker.ensure_running()
-            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # Ctrl-C is the server's to hear
-            try:
-                forkserver.ensure_running()
-            finally:
-                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            with own_modules():
+                resource_tracker.ensure_running()
+                before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # Ctrl-C is the server's to hear
+                try:
+                    forkserver.ensure_running()
+                finally:
+                    signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._context, name)

@@ -17,6 +17,7 @@ from typing import Any, Protocol
 
 from ...errors import InvalidValueError, SolverError
 from ...extras import need
+from ...processes import own_modules
 from ...solve.ensemble import cores
 from .job import Columns, Job
 from .plan import Plan
@@ -76,7 +77,8 @@ class Engine:
             while (chunk := following()) is not None:
                 take(chunk, work.job.run(work.values(chunk)))
         else:
-            _on_processes(self.processes, work, following, take)
+            with own_modules():
+                _on_processes(self.processes, work, following, take)
 
 
 def run_chunk(job: Job, values: Any) -> Columns:
@@ -169,7 +171,7 @@ def _client(scheduler: str, count: int) -> Iterator[Any]:
 
     if scheduler == "local":
         options = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
-        with LocalCluster(**options) as cluster, Client(cluster) as client:
+        with own_modules(), LocalCluster(**options) as cluster, Client(cluster) as client:
             yield client
         return
     try:
