@@ -18,6 +18,8 @@ const SEEN = 0.2 // of the first spin, from which it counts as spin the other wa
 const LEAST_ROUNDS = 2
 const EVEN = 0.03
 const NODS = 0.3 // degrees
+const UNTOLD = 0.25 // turns between two samples by which two ways of counting part
+const CUT_OFF = 0.01 // share of a path that its chords may cut off
 const MOVES = 1e-3 // of the body's own size
 const BY_TURNING = 'by the orientation; and by the integral of the angular velocity'
 const OF_EVENTS = 'by the event; and by the samples before it, drawn on'
@@ -191,6 +193,8 @@ function rounds(seen: Seen): Told | null {
   const { time, duration } = seen
   if (axis.map((one) => degrees(one, seen.up)).some((lean) => lean <= NODS || lean >= 180 - NODS)) return null
   const ways = headings(seen, axis).map((way) => way.map((angle) => (angle - way[0]!) / (2 * Math.PI)))
+  const parted = ways[0]!.map((angle, i) => angle - ways[1]![i]!)
+  if (parted.some((one, i) => i > 0 && Math.abs(one - parted[i - 1]!) > UNTOLD)) return null
   const [first, other] = ways.map((way) => Math.abs(way[way.length - 1]!)) as [number, number]
   if (first < LEAST_ROUNDS) return null
   const whole = ways[0]![ways[0]!.length - 1]!
@@ -330,7 +334,7 @@ function again(time: Signal, values: Signal): { measured: number; other: number 
 
 function way(seen: Seen): Told | null {
   const chords = pathOf(seen)
-  if (!chords) return null
+  if (!chords || cutOff(seen) > CUT_OFF * chords) return null
   const other = integral(seen.time, seen.speeds()).at(-1)!
   const said = `goes {} in ${Number(seen.duration.toPrecision(4))} s`
   const how = 'along its path: from sample to sample; and by the integral of its speed'
@@ -340,6 +344,15 @@ function way(seen: Seen): Told | null {
 function pathOf(seen: Seen): number {
   const places = seen.vectors('position')
   return places.slice(1).reduce((sum, p, i) => sum + Math.hypot(...sub(p, places[i]!)), 0)
+}
+
+/** By how much the chords from sample to sample are too short: of an arc that turns by θ by the share θ²/24. */
+function cutOff(seen: Seen): number {
+  const [places, ways] = [seen.vectors('position'), seen.vectors('velocity')]
+  return places.slice(1).reduce((sum, p, i) => {
+    const turned = Math.atan2(Math.hypot(...cross(ways[i]!, ways[i + 1]!)), dot(ways[i]!, ways[i + 1]!))
+    return sum + (Math.hypot(...sub(p, places[i]!)) * turned ** 2) / 24
+  }, 0)
 }
 
 // --- what theory has a sentence for, measured in the samples
