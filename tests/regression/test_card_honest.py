@@ -230,6 +230,21 @@ def test_windows_are_as_narrow_as_what_changes_in_them(spin: float) -> None:
     passes(**pivoting(spin))
 
 
+@pytest.mark.parametrize("torque", [1.2e-3, -1.2e-3])
+@pytest.mark.parametrize(("height", "rate"), [(0.003, -2.0), (0.006, 0.95), (0.006, -2.0), (0.01, -0.95), (0.01, 0.95)])
+def test_a_hard_landing_makes_no_later_slope_less_sharp(height: float, rate: float, torque: float) -> None:
+    # What a polynomial left of the slopes of slow slip was small beside those of the landing, and was let be.
+    loads = [{"kind": "rolling-resistance", "offset": 2e-4}, {"kind": "torque", "value": [torque, 0.0, 3.6e-4]}]
+    run = passes(
+        body={"kind": "ring", "radius": 0.044, "mass": 0.08},
+        support={"kind": "bowl", "radius": 0.52, "friction": 0.27, "motion": {"kind": "spin", "rate": rate}},
+        loads=loads,
+        start={"position": [-0.011, -0.126], "velocity": "co-rotating", "height": height},
+        run={"duration": 0.35, "every": 0.02},
+    )
+    assert {"land", "grip", "slip"} <= {event.kind for event in run.events}
+
+
 def test_a_hemisphere_that_tips_over_its_edge() -> None:
     body = {"kind": "hemisphere", "radius": 0.0189, "mass": 0.1196}
     motion = {"kind": "free-axle", "inertia": 0.003368, "rate": -6.93}

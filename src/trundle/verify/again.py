@@ -103,7 +103,7 @@ class Again:
         first = best = self._first_windows
         found = self._solve(first)
         looked_at = _at(found, first.ravel())
-        sizes = slope_sizes(looked_at, first)
+        sizes = slope_sizes(self.system, looked_at, first)
         windows, least = first.copy(), roughness(looked_at, first, sizes)
         rest = least.copy()
         for _ in range(_NARROWINGS):
@@ -111,7 +111,8 @@ class Again:
             if not rough.any():
                 break
             windows[rough] = narrowed(windows[rough])
-            rest[rough] = roughness(self.follow(windows[rough].ravel()), windows[rough], sizes)
+            own = tuple(size[rough] for size in sizes)
+            rest[rough] = roughness(self.follow(windows[rough].ravel()), windows[rough], own)
             best = np.where((rest < least)[:, None], windows, best)  # elsewhere it is rounding that is rough
             least = np.minimum(rest, least)
         return best, found if best is first else self._solve(best)

@@ -71,17 +71,25 @@ def _rates(windows: Samples) -> tuple[Array, Array, Array]:
     return windows.velocity, windows.angular_velocity, windows.support_coordinates[:, -1:]
 
 
-def slope_sizes(windows: Samples, times: Array) -> tuple[float, ...]:
-    """Return against what a slope of each of these is small or not, m/s² and rad/s²."""
-    turning = largest(windows.angular_velocity)
-    return tuple(
-        largest(_slope_at_middle(times, values.reshape(*times.shape, -1))) + turning * largest(values)
-        for values in _rates(windows)
+def slope_sizes(system: RollingSystem, windows: Samples, times: Array) -> tuple[Array, ...]:
+    """Return against what a slope of each of these is small or not in each window, m/s² and rad/s².
+
+    Each has its own: a landing elsewhere in the run makes no slope here less sharp.
+    """
+    at = windows.part(np.arange(_HALF_NODES, times.size, times.shape[1]))
+    F, _, J, _ = acting(system, at)
+    turning = _lengths(at.angular_velocity)
+    own = [
+        _lengths(_slope_at_middle(times, values.reshape(*times.shape, -1))) + turning * _lengths(values_now)
+        for values, values_now in zip(_rates(windows), _rates(at), strict=True)
         if values.size
-    )
+    ]
+    own[0] = np.maximum(own[0], _lengths(F) / float(system.body.mass))
+    own[1] += own[0] * _lengths(at.contact - at.position) * float(system.body.mass) / np.trace(J, axis1=1, axis2=2)
+    return tuple(own)
 
 
-def roughness(windows: Samples, times: Array, sizes: tuple[float, ...]) -> Array:
+def roughness(windows: Samples, times: Array, sizes: tuple[Array, ...]) -> Array:
     """Return what the last Chebyshev coefficients of V, Ω and an axle's rate in each window are to their slopes."""
     nodes = times.shape[1]
     weights = np.ones(nodes)
@@ -91,9 +99,13 @@ def roughness(windows: Samples, times: Array, sizes: tuple[float, ...]) -> Array
     found = np.zeros(len(times))
     for values, slope in zip(_rates(windows), sizes, strict=False):
         tails = np.abs(np.einsum("kn,wnc->wkc", last, values.reshape(*times.shape, -1))).max(axis=(1, 2))
-        found = np.maximum(found, tails * nodes / half / max(slope, 1e-300))
+        found = np.maximum(found, tails * nodes / half / np.maximum(slope, 1e-300))
     wide = times[:, -1] - times[:, 0] > 4 * _NARROWEST * np.abs(times).max()
     return np.where(wide, found, 0.0)
+
+
+def _lengths(vectors: Array) -> Array:
+    return np.linalg.norm(vectors, axis=-1)
 
 
 def _slope_at_middle(times: Array, values: Array) -> Array:
