@@ -13,12 +13,14 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 LIMIT = 6.0  # CPU seconds for a scenario and its card
-_PATIENT = 60.0  # times as long by the clock, where the machine is shared
+_HEARD_OUT = 6.0  # times as long before it is killed: what comes late may be wrong, too
+_PATIENT = 10.0  # times as long by the clock, where the machine is shared
 _CANDIDATES = 60  # scenarios that may be refused before one runs
 _MEMORY = 8 << 30  # bytes
 PASSED, FAILED, GAVE_UP, REFUSED = "passed", "card failed", "gave up in words", "refused"
@@ -64,7 +66,7 @@ class Outcome:
     text: str = ""
 
 
-def try_out(name: str, seed: int, say: Callable[..., None]) -> None:
+def try_out(name: str, seed: int, say: Callable[..., None], limit: float = LIMIT) -> None:
     """Draw scenarios of a class until one runs, and say what comes of it.
 
     Parameters
@@ -73,6 +75,8 @@ def try_out(name: str, seed: int, say: Callable[..., None]) -> None:
         Of the class, and of its generator.
     say : callable
         Takes what is known so far as keywords: whoever kills this process knows it then.
+    limit : float
+        CPU seconds for a scenario and its card: what takes longer has hung, for whoever waits.
     """
     import tomli_w
 
@@ -87,7 +91,7 @@ def try_out(name: str, seed: int, say: Callable[..., None]) -> None:
         text = tomli_w.dumps({"title": f"{name} {seed}", **{key: tables[key] for key in tables if key != "title"}})
         say(text=text, begins=True)
         try:
-            run_as_a_user_does(text, say)
+            run_as_a_user_does(text, say, limit)
         except TrundleError as error:
             kind = type(error).__name__
             refusals[kind] = refusals.get(kind, 0) + 1
@@ -97,27 +101,35 @@ def try_out(name: str, seed: int, say: Callable[..., None]) -> None:
         return
 
 
-def run_as_a_user_does(text: str, say: Callable[..., None]) -> None:
+def run_as_a_user_does(text: str, say: Callable[..., None], limit: float = LIMIT) -> None:
     """Run a scenario and make its card; an error by which trundle refuses it is the caller's."""
     import trundle as tr
 
+    begun = time.process_time()
     scenario = tr.Scenario.loads(text)
     try:
         run = scenario.run()
+        ran = time.process_time()
         card = run.card()
     except tr.InvalidValueError:  # of the start, which only the run looks at
         raise
     except tr.TrundleError as error:
-        say(outcome=GAVE_UP, cause=f"{type(error).__name__}: {_general(str(error))}", detail=str(error))
+        outcome, late = (GAVE_UP, "") if time.process_time() - begun <= limit else (HANG, "late: ")
+        say(outcome=outcome, cause=f"{late}{type(error).__name__}: {_general(str(error))}", detail=str(error))
         return
-    if card.passed:
+    phases = "".join(dict.fromkeys("rsfp"[phase] for phase in run.data.phase.values))
+    happened = f"phases {phases}; {', '.join(f'{one.kind} {one.time:.4g}' for one in run.events[:6]) or 'no events'}"
+    if not card.passed:
+        failures = [" ".join(str(figure).split()) for figure in card.failures]
+        cause = f"{run.method}: {', '.join(_general(figure.name) for figure in card.failures)}"
+        say(outcome=FAILED, cause=cause, detail=f"{'; '.join(failures)} ({happened})")
+        return
+    took = [ran - begun, time.process_time() - ran]
+    if sum(took) <= limit:
         say(outcome=PASSED)
         return
-    failures = [" ".join(str(figure).split()) for figure in card.failures]
-    phases = "".join(dict.fromkeys("rsfp"[phase] for phase in run.data.phase.values))
-    events = ", ".join(f"{event.kind} {event.time:.4g}" for event in run.events[:6])
-    cause = f"{run.method}: {', '.join(_general(figure.name) for figure in card.failures)}"
-    say(outcome=FAILED, cause=cause, detail=f"{'; '.join(failures)} (phases {phases}; {events or 'no events'})")
+    said = f"run {took[0]:.1f} s, card {took[1]:.1f} s, {len(run.events)} events ({happened})"
+    say(outcome=HANG, cause=f"{run.method}: passed, but late", detail=said)
 
 
 def _general(text: str) -> str:
@@ -260,6 +272,10 @@ def _warm_up() -> None:
     os.waitpid(compiling, 0)
 
 
+def _tried(case: tuple[str, int], limit: float, say: Callable[..., None]) -> None:
+    try_out(*case, say, limit)
+
+
 def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT) -> Iterator[Outcome]:
     """Try out seeds of classes, some at a time.
 
@@ -289,7 +305,7 @@ def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit
             if case is None:
                 break
             slot = free.pop()
-            child = Child(lambda say, case=case: try_out(*case, say), folder / f"worker-{slot}", limit)  # type: ignore[misc]
+            child = Child(partial(_tried, case, limit), folder / f"worker-{slot}", _HEARD_OUT * limit)
             running[child.process] = (*case, child, slot)
         if not running:
             return

@@ -236,6 +236,9 @@ def test_a_run_is_judged_as_its_user_would(monkeypatch: pytest.MonkeyPatch) -> N
     assert said == {"outcome": "passed"}
     with pytest.raises(tr.ScenarioError, match="rim"):
         run_as_a_user_does(SCENARIO.format(support="rim = 0.05", start=""), said.update)
+    late: dict[str, Any] = {}
+    run_as_a_user_does(SCENARIO.format(support="", start=""), late.update, limit=0.0)
+    assert (late["outcome"], late["cause"]) == ("hang", "exact: passed, but late")
 
     def broken(*_: Any) -> None:
         raise tr.SolverError("At t = 0.25 s nothing goes on.")
@@ -243,12 +246,14 @@ def test_a_run_is_judged_as_its_user_would(monkeypatch: pytest.MonkeyPatch) -> N
     with monkeypatch.context() as planted:
         planted.setattr("trundle.solve.methods.run", broken)
         run_as_a_user_does(SCENARIO.format(support="", start=""), said.update)
+        run_as_a_user_does(SCENARIO.format(support="", start=""), late.update, limit=0.0)
+    assert (late["outcome"], late["cause"]) == ("hang", "late: SolverError: At t = # s nothing goes on.")
     assert said["outcome"] == "gave up in words"
     assert said["cause"] == "SolverError: At t = # s nothing goes on."
     from trundle import verify
 
     monkeypatch.setattr(verify.figures, "_events", lambda _: [verify.CardFigure("planted", 2.0, "", 1.0, False)])
-    run_as_a_user_does(SCENARIO.format(support="", start=""), said.update)
+    run_as_a_user_does(SCENARIO.format(support="", start=""), said.update, limit=0.0)  # late, and wrong
     assert said["outcome"] == "card failed"
     assert said["cause"] == "exact: planted"
     assert said["detail"].startswith("FAIL planted 2 at most 1 (phases r;")
