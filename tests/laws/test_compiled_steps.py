@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 
 import trundle as tr
 from trundle.errors import SolverError
@@ -253,6 +254,42 @@ def test_no_law_is_compiled_for_the_few_steps_to_where_it_ends_the_run(
     monkeypatch.setattr("trundle.solve.compiled_loop.compiled", lambda *_: pytest.fail("compiled"))
     run = tr.Scenario.loads(CURVED[name]).run()
     assert run.events[-1].kind == "curved", run.events
+
+
+def slipping_again_and_again(duration: float) -> tr.Scenario:
+    """A flat stone that slides down a slope and spins: it slips and rolls in turns, and each slip begins slowly."""
+    support = {"kind": "plane", "tilt": "12 deg", "friction": 0.4}
+    start = {"position": [0, 0], "angular_velocity": [0, -0.0617, 5.0], "attitude": ["0 deg", "0.7071 deg", "45 deg"]}
+    tables = {
+        "body": {"kind": "ellipsoid", "semi_axes": [0.2, 0.03, 0.02], "mass": 1.0, "moments": [2e-4, 1.6e-3, 1.7e-3]},
+        "support": support,
+        "start": start | {"velocity": "rolling"},
+        "run": {"duration": duration, "every": 0.1, "method": "runge-kutta"},
+    }
+    tables["body"] |= {"products": [2e-5, 0, 0], "centre": [0, 0, 0.01]}
+    return tr.Scenario.loads(tomli_w.dumps(tables))
+
+
+@pytest.mark.parametrize("duration", [1.0, 1.4])
+def test_what_a_run_has_had_compiled_is_there_for_each_later_stretch(
+    duration: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario, steps, one_by_one = slipping_again_and_again(duration), [0], runge_kutta._one_by_one
+
+    def counted(*given: Any) -> Any:
+        for path in one_by_one(*given):
+            steps[0] += path.count
+            yield path
+
+    with monkeypatch.context() as patch:
+        patch.setattr(runge_kutta, "_one_by_one", counted)
+        run = scenario.run()
+    slips = sum(event.kind == "slip" for event in run.events)
+    assert slips >= 12
+    assert steps[0] < 65 * slips  # 100 where each of them sets out one by one
+    assert run.card().passed
+    # What this process has compiled meanwhile has no part in it.
+    assert np.array_equal(scenario.run().samples.position, run.samples.position)
 
 
 HIDDEN = """

@@ -9,7 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Protocol
 
@@ -50,7 +50,16 @@ _GROWING = 1.5  # times as long as the mean of so many: then the next will be lo
 WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
 
-Taken = Counter[type[Law]]  # steps of each law in a run, one by one
+@dataclass
+class Taken:
+    """What a run has come through: steps of each law one by one, and laws whose steps were worth compiling."""
+
+    steps: Counter[type[Law]] = field(default_factory=Counter)
+    compiled: set[Any] = field(default_factory=set)  # their identities
+
+    def copy(self) -> Taken:
+        """Return another that goes on from here."""
+        return Taken(Counter(self.steps), set(self.compiled))
 
 
 class Path(Protocol):
@@ -103,7 +112,7 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 9))  # (5/7) g sin α
     0.714285714
     """
-    return phases.solve(partial(integrate, taken=Counter()), system, start, times, tolerance, progress)
+    return phases.solve(partial(integrate, taken=Taken()), system, start, times, tolerance, progress)
 
 
 def integrate(
@@ -114,7 +123,7 @@ def integrate(
     progress: Progress | None = None,
     taken: Taken | None = None,
 ) -> Iterator[Segment]:
-    """Follow one law to its first stop, given how many steps one by one the run has taken before."""
+    """Follow one law to its first stop, given what the run has come through before."""
     # It counts from where the law begins to hold: far from 0 no step would be short enough.
     end = float(times[-1]) - now.time if times.size else 0.0
     rows = _Rows(times - now.time, len(now.state_vector))
@@ -130,8 +139,8 @@ def integrate(
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
     """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it."""
-    taken: Taken = Counter()
-    return partial(dense, taken=taken), lambda: partial(integrate, taken=Counter(taken))
+    taken = Taken()
+    return partial(dense, taken=taken), lambda: partial(integrate, taken=taken.copy())
 
 
 def dense(
@@ -180,7 +189,7 @@ def _integrated(
     taken: Taken | None = None,
 ) -> Iterator[Segment]:
     """Follow one law to its first stop; all times count from its beginning."""
-    taken = Counter() if taken is None else taken
+    taken = Taken() if taken is None else taken
     law, begin, traced = now.law, now.time, _traced(system, now)
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
@@ -254,6 +263,7 @@ def _paths(
         to_come = _StepsToCome(law, traced, begin, stepper, taken)
         yield from _one_by_one(stepper, to_come.worth_compiling if compiles else lambda: False)
         if stepper.status == "running" and traced.compiled is not None:
+            taken.compiled.add(law.identity)
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)
 
 
@@ -275,7 +285,8 @@ class _StepsToCome:
     How many there will be, the last of them tell and how far the law seems to lead: to the run's end, or to where an
     event function comes to zero that goes on falling as it fell. While steps grow nothing is known, nor where there
     seem to be more than are ever taken; of very many a share is to be done first. Where half of what is worth it is
-    done, stretches of this law have come again and again: only what ends the run ends them.
+    done, stretches of this law have come again and again: only what ends the run ends them. Once a run has had a law
+    compiled, that is there for each later stretch of it.
 
     Parameters
     ----------
@@ -285,8 +296,8 @@ class _StepsToCome:
         From when the stepper's times count, s.
     stepper : OdeSolver
         On its way.
-    taken : Counter
-        Steps of each law in the run so far; counted on here.
+    taken : Taken
+        What the run has come through; counted on here.
     """
 
     def __init__(self, law: Law, traced: PythonLaw, begin: float, stepper: Any, taken: Taken) -> None:
@@ -297,20 +308,22 @@ class _StepsToCome:
     def worth_compiling(self) -> bool:
         """Take account of a step, and tell."""
         self.count += 1
-        self.taken[type(self.law)] += 1
+        self.taken.steps[type(self.law)] += 1
+        if self.law.identity in self.taken.compiled:
+            return True
         if self.count % _BEGINNING:
             return False
         gone, left = self.stepper.t - self.time, self._left()
         mean = gone / _BEGINNING
         growing, coming = self.stepper.h_abs > _GROWING * mean, left / mean
-        seen = self.taken[type(self.law)] >= min(_SEEN * coming, WORTH_COMPILING / 2)
+        seen = self.taken.steps[type(self.law)] >= min(_SEEN * coming, WORTH_COMPILING / 2)
         return seen and not growing and WORTH_COMPILING < coming < _most_steps(self.law)
 
     def _left(self) -> float:
         """Return how much time seems to be left, s, seen over the steps since this was last asked."""
         gone, before = self.stepper.t - self.time, self.values
         self.time, self.values = float(self.stepper.t), self._event_functions()
-        which = self.ending | (2 * self.taken[type(self.law)] < WORTH_COMPILING)
+        which = self.ending | (2 * self.taken.steps[type(self.law)] < WORTH_COMPILING)
         return min(self.stepper.t_bound - self.time, until_one_falls(before[which], self.values[which], gone))
 
     def _event_functions(self) -> Array:
