@@ -775,3 +775,41 @@ def test_a_body_that_turns_back_against_resistance_begins_with_the_least_turn(ro
         run={"duration": 2.0, "every": 0.02},
     )
     assert {"stop", "start"} <= {event.kind for event in run.events}
+
+
+# --- samples all but at an event --------------------------------------------------------------------------------------
+
+CYLINDER = {"kind": "weighted-cylinder", "radius": 0.035, "mass": 0.01, "weight": 0.07, "distance": 0.03}
+TILTED = {"kind": "plane", "friction": 0.3, "motion": {"kind": "precessing-tilt", "angle": 0.058, "rate": 0.0}}
+NEAR_EVENTS = {  # each rolls, slips and grips in turns
+    "a weighted cylinder": {"body": CYLINDER, "support": TILTED, "start": {"position": [0.0, 0.2]}},
+    "a ring in a bowl": {
+        "body": {"kind": "ring", "radius": 0.044, "mass": 0.08},
+        "support": {"kind": "bowl", "radius": 0.52, "friction": 0.27, "motion": {"kind": "spin", "rate": 0.95}},
+        "loads": [{"kind": "torque", "value": [1.2e-3, 0.0, 3.6e-4]}],
+        "start": {"position": [-0.011, -0.126], "velocity": "co-rotating", "height": 0.003},
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def near_events() -> dict[tuple[str, str], tr.Trajectory]:
+    runs = {}
+    for kind, tables in NEAR_EVENTS.items():
+        scenario = tr.Scenario.loads(tomli_w.dumps(tables | {"run": {"duration": 0.6, "every": 0.1}}))
+        runs |= {(kind, method): scenario.run(method) for method in ("taylor", "runge-kutta")}
+    return runs
+
+
+@pytest.mark.parametrize("aside", [sign * 10.0**-k for k in (7, 8, 9, 10, 11, 12) for sign in (-1, 1)])
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("kind", NEAR_EVENTS)
+def test_friction_of_slip_that_is_all_but_over_is_as_sharp_as_the_slip(
+    kind: str, method: str, aside: float, near_events: dict[tuple[str, str], tr.Trajectory]
+) -> None:
+    run = near_events[kind, method]
+    events = [event.time for event in run.events if not event.final]
+    assert {"slip", "grip"} <= {event.kind for event in run.events}
+    times = np.array([run.start.time, *(time + aside for time in events)])
+    card = run.at(times[times <= run.data.time.values[-1]]).card()
+    assert card.passed, str(card)

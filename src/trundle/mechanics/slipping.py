@@ -123,7 +123,10 @@ def slip(
     s = slip_velocity - n * n.dot(slip_velocity)  # rounding's part along n would grow where the support bends
     free = unpushed(system, time, contact, orientation, Omega, s, coordinates, held=held)
     acting = free.acting
-    hat = slip_direction(s) if direction is None else direction
+    if direction is None:
+        hat = slip_direction(s)
+    else:  # of a slip that is all but over, rounding's part along n is large beside it
+        hat = direction if direction is ZERO else direction - n * n.dot(direction)
     d = n if hat is ZERO else n - hat * system.support.sliding_friction
     answer = response(system, contact, free.inertia, d, acting.couple if acting.has_couple else None)
     opening_per_newton = n.dot(answer.slip)

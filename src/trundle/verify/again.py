@@ -94,7 +94,8 @@ class Again:
     def _first_windows(self) -> Array:
         total = sum(stretch.length for stretch in self.stretches)
         least = _SHORTEST * max(abs(self.start.time), abs(float(self.at.time[-1])))
-        long = [stretch for stretch in self.stretches if stretch.length > least] or self.stretches
+        long = [stretch for stretch in self.stretches if stretch.length > max(least, 2 * stretch.settling)]
+        long = long or self.stretches
         return np.vstack([stretch.windows(stretch.length / total) for stretch in long[:_MOST_STRETCHES]])
 
     @cached_property

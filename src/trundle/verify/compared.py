@@ -15,9 +15,10 @@ from ..solve.dense import Dense
 from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
-from ..solve.samples import Event, Samples
+from ..solve.samples import SLIPPING, Event, Samples
 from .bounds import EXACT, SINGULAR, Array, before_a_singular_end, bound_of, largest, pace_of, sizes_of, turned_in
 from .card import CardFigure, checked
+from .friction import normal_and_friction, slip_of
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 from .landings import landings_of
 
@@ -26,6 +27,7 @@ _SLOW = 1e-3  # of a body's turning: what a support's own is held against at lea
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
 _WORK_FOLLOWED = 2e9  # products, in all of a dozen runs: a second or two
 _WORK_FINER = 1.5e9  # products, up to which a run is followed more finely: a second or two
+_OF_SPEEDS = 4e-16  # of those at the contact, that slip is their difference: two roundings
 _RUNS = 12  # about: the run itself, and one for each way in which its state can change
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
@@ -152,7 +154,22 @@ class Compared:
         """The difference at each sample, as a share; at a singular end only the orientation says something."""
         known = self.alike.copy()
         known[before_a_singular_end(self.ours).time.size :] = False
-        return np.where(known, _difference(self.ours, self.theirs, self.sizes), 0.0)
+        apart = _difference(self.ours, self.theirs, self.sizes, {"contact_force": self._swung})
+        return np.where(known, apart, 0.0)
+
+    @cached_property
+    def _swung(self) -> Array:
+        """How far friction swings between the two, N: of slip that is all but over, a rounding is a large part."""
+        which = np.flatnonzero((self.ours.phase == SLIPPING) & (self.theirs.phase == SLIPPING))
+        found = np.zeros(self.ours.time.size)
+        if which.size:
+            ours, theirs = self.ours.part(which), self.theirs.part(which)
+            (s, speeds), (other, _) = slip_of(self.system, ours), slip_of(self.system, theirs)
+            apart = np.linalg.norm(s - other, axis=1) + _OF_SPEEDS * speeds
+            slower = np.minimum(np.linalg.norm(s, axis=1), np.linalg.norm(other, axis=1))
+            friction = np.linalg.norm(normal_and_friction(self.system, ours)[1], axis=1)
+            found[which] = friction * np.minimum(2.0, 2 * apart / np.maximum(slower, 1e-300))
+        return found
 
     @cached_property
     def turns(self) -> Array:
@@ -335,10 +352,11 @@ class Compared:
         return checked(name, float(values[worst]), float(bounds[worst]), said, unit)
 
 
-def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> Array:
-    """Return the largest difference at each sample as a share of the quantity's size."""
+def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float], blurred: dict[str, Array]) -> Array:
+    """Return the largest difference at each sample as a share of the quantity's size, but for what is blurred."""
     shares = [
-        np.linalg.norm(getattr(ours, field) - getattr(theirs, field), axis=1) / max(size, 1e-300)
+        np.maximum(np.linalg.norm(getattr(ours, field) - getattr(theirs, field), axis=1) - blurred.get(field, 0.0), 0.0)
+        / max(size, 1e-300)
         for field, size in sizes.items()
     ]
     return np.max(shares, axis=0)

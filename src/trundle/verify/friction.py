@@ -98,8 +98,18 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
         yield _resistance(system, *resisted)
 
 
-def _slip(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
-    """Return the slip, and the speeds that it is the small difference of, m/s."""
+def slip_of(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
+    """Return the slip, and the speeds that it is the small difference of, m/s.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> lane = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane(), friction=0.1), gravity=10.0)
+    >>> start = lane.place(velocity=(7.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    >>> s, speeds = slip_of(lane, tr.simulate(lane, start, duration=3.0, every=1.0).samples)
+    >>> s[:, 0].round(9).tolist(), speeds.round(9).tolist()
+    ([7.0, 3.5, 0.0, 0.0], [7.0, 8.5, 10.0, 10.0])
+    """
     V, turning, u = (np.broadcast_to(v.array(), at.position.shape) for v in at.speeds(system))
     # Ω×ρ is as sharp as |Ω||ρ|, also where Ω is along ρ and all three are rounding.
     arm = np.linalg.norm(at.contact - at.position, axis=1)
@@ -109,7 +119,7 @@ def _slip(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
 
 def _directed(system: RollingSystem, at: Samples) -> NDArray[np.bool_]:
     """Tell where a body that slips has a direction to slip in: at the very grip, the force is that of a rounding."""
-    s, at_contact = _slip(system, at)
+    s, at_contact = slip_of(system, at)
     return (at.phase != SLIPPING) | (np.linalg.norm(s, axis=1) > _ROUNDING * at_contact)
 
 
@@ -187,7 +197,7 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
         return checked("friction while slipping", np.inf, bound, "nothing limits its friction: it cannot slip")
     mu = float(coefficient)
     N, f = normal_and_friction(system, slipping)
-    s, at_contact = _slip(system, slipping)
+    s, at_contact = slip_of(system, slipping)
     speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
     sharp = np.where(speed > _SLOWEST * at_contact.max(), bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
     off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
