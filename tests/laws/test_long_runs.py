@@ -262,3 +262,62 @@ def test_no_long_law_is_compiled_with_care_for_the_few_steps_to_where_it_ends(
     long = [one for one in efforts if one.cost > taylor._SHORT_LAW]
     assert max(one.steps for one in long) > 100  # they were looked at
     assert {one.level for one in long} == {taylor.IN_HASTE}
+
+
+# --- a ball that slides without friction ------------------------------------------------------------------------------
+
+BOWL, BALL_RADIUS = 0.5, 0.02
+WITHOUT = {"friction": 0.0}, {"friction": 0.05, "kinetic_friction": 0.0}
+
+
+def sliding(speed: float, friction: dict[str, float], duration: float, method: str) -> tr.Trajectory:
+    system = tr.RollingSystem(tr.Body.solid_sphere(BALL_RADIUS, 0.1), tr.Support(tr.Bowl(BOWL), **friction))
+    start = system.place((0.2, 0.0), velocity=(0.0, speed, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    return tr.simulate(system, start, duration, duration / 50, method=method)
+
+
+def pendulum(run: tr.Trajectory) -> Any:
+    """Return the height over the bowl's centre, by 30 digits, of a spherical pendulum that sets out level.
+
+    ż² = (2g/L²) (z − z₁)(z − z₂)(z − z₃), and so z = z₁ + (z₂ − z₁) sn²(ωt + φ) (Whittaker 1937, §55).
+    """
+    import mpmath as mp
+
+    (x, _, height), (_, v, _) = run.start.position, run.start.velocity
+    with mp.workdps(30):
+        g, z0, x, v = mp.mpf(G), mp.mpf(height) - BOWL, mp.mpf(x), mp.mpf(v)
+        L2, E = x * x + z0 * z0, v * v / 2 + g * z0
+        z1, z2, z3 = sorted(map(mp.re, mp.polyroots([2 * g, -2 * E, -2 * g * L2, 2 * E * L2 - x * x * v * v])))
+        m, rate = (z2 - z1) / (z3 - z1), mp.sqrt(2 * g * (z3 - z1) / L2) / 2
+        phase = mp.ellipk(m) if abs(z0 - z2) < abs(z0 - z1) else mp.mpf(0)
+        sn = (mp.ellipfun("sn", rate * mp.mpf(t) + phase, m=m) for t in run.data.time.values.tolist())
+        return np.array([float(z1 + (z2 - z1) * s * s) for s in sn])
+
+
+@pytest.mark.parametrize("friction", WITHOUT)
+@pytest.mark.parametrize("speed", [0.3, -1.0, 6.0])
+def test_a_ball_that_slides_in_a_bowl_for_long_is_a_spherical_pendulum(
+    speed: float, friction: dict[str, float]
+) -> None:
+    run = sliding(speed, friction, 300.0, "taylor")
+    heights = run.data.position.values[:, 2] - BOWL
+    assert (run.data.phase.values == 1).all()
+    np.testing.assert_allclose(heights, pendulum(run), rtol=0, atol=1e-12 * max(1.0, abs(speed)))
+    z, V = run.data.position.values[:, 2], run.data.velocity.values
+    assert drift([0.5 * (V * V).sum(axis=1), G * z]) < 3e-14  # 1e-10 where s keeps what rounding leaves along n
+    assert run.card().passed
+
+
+def test_so_it_is_by_the_runge_kutta_method() -> None:
+    run = sliding(1.0, WITHOUT[0], 100.0, "runge-kutta")
+    np.testing.assert_allclose(run.data.position.values[:, 2] - BOWL, pendulum(run), rtol=0, atol=1e-9)
+    z, V = run.data.position.values[:, 2], run.data.velocity.values
+    assert drift([0.5 * (V * V).sum(axis=1), G * z]) < 2e-11
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("speed", [1e5, -3e4])
+def test_slip_that_turns_by_right_angles_without_end_is_refused_in_words(speed: float, method: str) -> None:
+    """No event happens there, and so nothing counted how often a stretch began."""
+    with pytest.raises(tr.SolverError, match="The run hardly gets on at t = "):
+        sliding(speed, WITHOUT[1], 4.0, method)

@@ -59,6 +59,7 @@ class Unpushed:
     angular_acceleration: Vector  # Ω̇, rad/s²
     slip_rate: Vector  # ṡ, m/s²
     opening: Scalar  # the rate of s·n: how fast it would come off, m/s²
+    normal_rate: Vector  # ṅ, 1/s
     holding: Vector = ZERO  # the couple that keeps it from turning over the support, N m
 
 
@@ -120,7 +121,8 @@ def slip(
     contact = contact_at(system, time, point, orientation, coordinates)
     n, support = contact.normal, contact.support
     Omega = unturned(contact, angular_velocity) if held else angular_velocity
-    s = slip_velocity - n * n.dot(slip_velocity)  # rounding's part along n would grow where the support bends
+    off = n.dot(slip_velocity)  # rounding's part along n: left in s it would grow where the support bends
+    s = slip_velocity - n * off
     free = unpushed(system, time, contact, orientation, Omega, s, coordinates, held=held)
     acting = free.acting
     if direction is None:
@@ -141,7 +143,7 @@ def slip(
         free.point_rate,
         orientation.rate(Omega),
         free.angular_acceleration + answer.angular_velocity * N,
-        free.slip_rate + answer.slip * N,
+        free.slip_rate + answer.slip * N + free.normal_rate * off,  # it turns with n, or s would grow by it
         N,
         opening_per_newton,
         d * N,
@@ -236,7 +238,7 @@ def unpushed(
     if system.support.motion.free:  # I ω̇ = τ − e·(p − X)×R, so that u̇ is affine in N
         driven = system.support.motion.axle_torque(time, coordinates) - support.axle.dot(acting.from_support)
         s_rate = s_rate - support.lever(point) * (driven / system.support.motion.inertia)
-    return Unpushed(V, p_rate, acting, J, turning, s_rate, n.dot(s_rate) + n_rate.dot(s), holding)
+    return Unpushed(V, p_rate, acting, J, turning, s_rate, n.dot(s_rate) + n_rate.dot(s), n_rate, holding)
 
 
 def fly(
