@@ -24,10 +24,13 @@ from ..mechanics.system import RollingSystem, State
 from . import corners, transitions
 from .contact_state import ContactState
 from .laws import CORNER, Law, RollingLaw, SlippingLaw
+from .patience import Patience
 from .samples import AT_ONCE, FLIGHT, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
 from .transitions import JOLT, PhaseStart, ZeroCrossing
 
 _MOST_EVENTS = 10_000
+# Stops that are no events, as where slip has turned by a right angle: a minute or two, and some seconds.
+_PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 500, "name": "The run"}
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
 _MANY, _MANY_WITHIN = 50, 1e-3  # events, and the share of the time in which the motion changes: no bounces are so close
 ENDS = {
@@ -177,6 +180,7 @@ def course(
     events: list[Event] = []
     passed: list[float] = []  # corners
     left = times
+    patience = Patience(start.time, float(times[-1]) if times.size else start.time, **_PATIENCE)
 
     def behind(now: PhaseStart) -> PhaseStart:
         return _behind_it(system, begin(system, now), bends)
@@ -206,6 +210,8 @@ def course(
         if stop.name.startswith(CORNER):
             passed.append(stop.time)
             corners.check_count(system, passed, now)
+        elif not now.events and stop.name != JOLT:
+            patience.after(1, stop.time)
         left = _across(system, law, stop, now, left[taken:], put)
 
 
