@@ -229,7 +229,7 @@ SLIPPING_LAW = (
         "N = -1.01 * free.opening / opening_per_newton",
         SLIPS,
     ),
-    Mutant("T4: ṅ·s left out", SLIPPING, "n.dot(s_rate) + n_rate.dot(s), holding", "n.dot(s_rate), holding", SLIPS),
+    Mutant("T4: ṅ·s left out", SLIPPING, "n.dot(s_rate) + n_rate.dot(s), n_rate", "n.dot(s_rate), n_rate", SLIPS),
     Mutant(
         "T4: S w left out of ṅ",
         SLIPPING,
@@ -271,8 +271,8 @@ SLIPPING_LAW = (
     Mutant(
         "T4: the slip grows 1 % too fast",
         SLIPPING,
-        "free.slip_rate + answer.slip * N,",
-        "(free.slip_rate + answer.slip * N) * 1.01,",
+        "free.slip_rate + answer.slip * N +",
+        "(free.slip_rate + answer.slip * N) * 1.01 +",
         SLIPS,
     ),
     Mutant(
