@@ -784,7 +784,7 @@ def test_a_body_that_turns_back_against_resistance_begins_with_the_least_turn(ro
 
 CYLINDER = {"kind": "weighted-cylinder", "radius": 0.035, "mass": 0.01, "weight": 0.07, "distance": 0.03}
 TILTED = {"kind": "plane", "friction": 0.3, "motion": {"kind": "precessing-tilt", "angle": 0.058, "rate": 0.0}}
-NEAR_EVENTS = {  # each rolls, slips and grips in turns
+NEAR_EVENTS: dict[str, dict[str, Any]] = {  # each rolls, slips and grips in turns
     "a weighted cylinder": {"body": CYLINDER, "support": TILTED, "start": {"position": [0.0, 0.2]}},
     "a ring in a bowl": {
         "body": {"kind": "ring", "radius": 0.044, "mass": 0.08},
