@@ -258,15 +258,14 @@ def test_no_law_is_compiled_for_the_few_steps_to_where_it_ends_the_run(
 
 def slipping_again_and_again(duration: float) -> tr.Scenario:
     """A flat stone that slides down a slope and spins: it slips and rolls in turns, and each slip begins slowly."""
-    support = {"kind": "plane", "tilt": "12 deg", "friction": 0.4}
+    body = {"kind": "ellipsoid", "semi_axes": [0.2, 0.03, 0.02], "mass": 1.0, "moments": [2e-4, 1.6e-3, 1.7e-3]}
     start = {"position": [0, 0], "angular_velocity": [0, -0.0617, 5.0], "attitude": ["0 deg", "0.7071 deg", "45 deg"]}
     tables = {
-        "body": {"kind": "ellipsoid", "semi_axes": [0.2, 0.03, 0.02], "mass": 1.0, "moments": [2e-4, 1.6e-3, 1.7e-3]},
-        "support": support,
+        "body": body | {"products": [2e-5, 0, 0], "centre": [0, 0, 0.01]},
+        "support": {"kind": "plane", "tilt": "12 deg", "friction": 0.4},
         "start": start | {"velocity": "rolling"},
         "run": {"duration": duration, "every": 0.1, "method": "runge-kutta"},
     }
-    tables["body"] |= {"products": [2e-5, 0, 0], "centre": [0, 0, 0.01]}
     return tr.Scenario.loads(tomli_w.dumps(tables))
 
 

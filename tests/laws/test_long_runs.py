@@ -279,7 +279,8 @@ def sliding(speed: float, friction: dict[str, float], duration: float, method: s
 def pendulum(run: tr.Trajectory) -> Any:
     """Return the height over the bowl's centre, by 30 digits, of a spherical pendulum that sets out level.
 
-    ż² = (2g/L²) (z − z₁)(z − z₂)(z − z₃), and so z = z₁ + (z₂ − z₁) sn²(ωt + φ) (Whittaker 1937, §55).
+    Its energy and its angular momentum h leave L² ż² = 2 (E − g z)(L² − z²) − h² = 2g (z − z₁)(z − z₂)(z − z₃), and so
+    z = z₁ + (z₂ − z₁) sn²(ωt + φ).
     """
     import mpmath as mp
 
@@ -308,7 +309,7 @@ def test_a_ball_that_slides_in_a_bowl_for_long_is_a_spherical_pendulum(
     assert run.card().passed
 
 
-def test_so_it_is_by_the_runge_kutta_method() -> None:
+def test_a_ball_that_slides_in_a_bowl_is_one_by_the_runge_kutta_method_too() -> None:
     run = sliding(1.0, WITHOUT[0], 100.0, "runge-kutta")
     np.testing.assert_allclose(run.data.position.values[:, 2] - BOWL, pendulum(run), rtol=0, atol=1e-9)
     z, V = run.data.position.values[:, 2], run.data.velocity.values
