@@ -131,6 +131,41 @@ EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[
         ("land", "land"),
         (0.02, 0.08, 0.12),
     ),
+    "a ball bounces about in an uneven bowl": (
+        {
+            "body": BALL,
+            "support": {"kind": "ellipsoidal-bowl", "semi_axes": [0.24, 0.43, 0.18], "restitution": 0.5},
+            "start": {"position": [0.02, -0.1], "velocity": [0.4, 0.1, -0.2], "height": 0.03},
+        },
+        ("support.semi_axes[2]", "start.velocity[1]", "support.restitution", "gravity"),
+        ("land", "land", "land"),
+        (0.03, 0.1, 0.16, 0.2),
+    ),
+    "a ball lands on a light table that is free to turn": (
+        {
+            "body": BALL,
+            "support": {
+                "kind": "plane",
+                "friction": 0.1,
+                "tangential_restitution": 0.9,
+                "motion": {"kind": "free-axle", "inertia": 1e-5},
+            },
+            "start": {"position": [0.2, 0.1], "velocity": [0.3, 0.1, -0.5], "spin": 1.0, "height": 0.02},
+        },
+        ("body.mass", "start.velocity[0]", "support.friction"),
+        ("land", "grip"),
+        (0.02, 0.05, 0.1),
+    ),
+    "a cut ball begins to slip whose direction lags": (
+        {
+            "body": {"kind": "hemisphere", "radius": 0.015, "density": 880.0, "centre": [0.0035, -0.005, -0.012]},
+            "support": {"kind": "paraboloid", "radius": 0.11, "tilt": 0.6, "friction": 0.26},
+            "start": {"position": [-0.0144, -0.013], "orientation": [0.937, 0.021, 0.272, 0.117]},
+        },
+        ("body.centre[2]", "support.friction", "gravity"),
+        ("slip",),
+        (0.02, 0.04, 0.06, 0.08),
+    ),
     "a table jerks under a ball, which holds": (
         {
             "body": BALL,

@@ -71,20 +71,20 @@ class Contact:
         return whole / self.relative_curvature_determinant(gap)
 
     def rates(
-        self, slip: Vector, angular_velocity: Vector, velocity: Vector, gap: Scalar = 0.0
+        self, slip: Vector, angular_velocity: Vector, velocity: Vector, gap: Scalar | None = None
     ) -> tuple[Vector, Vector]:
         """Return ṗ and ρ̇ by the contact kinematics T1: (1 + C S) w = s + C(Ω − ω)×n, ṗ = u + w, ρ̇ = ṗ − V.
 
-        Across a gap g, p is the support's point nearest to the body, p + g n the body's nearest to the support, and
-        (1 + (C + g)S) w = s − (s·n)n + C(Ω − ω)×n − g ω×n.
+        A body in flight has a gap g, were it 0 for an instant. Then p is the support's point nearest to the body,
+        p + g n the body's nearest to the support, and (1 + (C + g)S) w = s − (s·n)n + C(Ω − ω)×n − g ω×n.
         """
         n, omega = self.normal, self.support.angular_velocity
         moved = slip + self.inverse_curvature.on_tangent((angular_velocity - omega).cross(n))
-        if not is_zero(gap):
+        if gap is not None:
             moved = moved - n * slip.dot(n) - omega.cross(n) * gap
-        along = self.along_support(moved, gap)
+        along = self.along_support(moved, 0.0 if gap is None else gap)
         point_rate = self.support.material_velocity(self.point) + along
-        if is_zero(gap):
+        if gap is None:
             return point_rate, point_rate - velocity
         n_rate = omega.cross(n) + self.shape_operator.on_tangent(along)
         return point_rate, point_rate + n * slip.dot(n) + n_rate * gap - velocity

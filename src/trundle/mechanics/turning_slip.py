@@ -7,12 +7,13 @@ however slow the slip is. All is in units of an impact: speeds as shares of one,
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
 
-from .duals import value_of
+from ..errors import SolverError
+from .duals import slopes_of, value_of
 from .scalars import Scalar, namespace
 
 _TERMS = 32  # of a series
@@ -38,7 +39,7 @@ class TurningSlip:
     def followed(self, least: float, aim: Scalar | None) -> tuple[TurningSlip, bool] | None:
         """Follow it until it is all but nothing, or the landing's part is over, and tell whether the first came.
 
-        None where neither does: friction jams the body.
+        None where neither does, but slip grows on: friction jams the body.
 
         Parameters
         ----------
@@ -46,6 +47,11 @@ class TurningSlip:
             The size at which slip has all but ended.
         aim : float or None
             The work at which the landing ends; None: compression ends, at `up` = 0.
+
+        Raises
+        ------
+        SolverError
+            Its direction settles so fast that this takes too many steps.
         """
         now, jammed = self, _JAMMED * self.size
         row, value = (_UP, 0.0) if aim is None else (_WORK, aim)
@@ -57,8 +63,11 @@ class TurningSlip:
             if now.size <= least:
                 return now, True
             if not now.size < jammed:
-                break
-        return None
+                return None
+        raise SolverError(
+            "A landing is too stiff to follow: what is struck turns far too easily one way. Give a free axle more "
+            "inertia, or use less friction."
+        )
 
     @cached_property
     def terms(self) -> list[list[Scalar]]:
@@ -100,14 +109,20 @@ class TurningSlip:
 
     @cached_property
     def step(self) -> float:
-        """How far the series hold to the last digit."""
-        scales, last = (self.size, 1.0, 1.0, 1.0, 1.0, 1.0), _TERMS - 1
-        pairs = list(zip(self.terms, scales, strict=True))
-        shares = [max(abs(value_of(row[k])) / value_of(scale) for row, scale in pairs) for k in (-2, -1)]
-        return min(
-            (_PRECISION / max(share, 1e-300)) ** (1.0 / power)
-            for share, power in zip(shares, (last - 1, last), strict=True)
-        )
+        """How far the series hold to the last digit, and where they are duals those of the slopes, too.
+
+        Where the direction has settled it shows in the slopes alone how fast it does.
+        """
+        scales = [float(value_of(scale)) for scale in (self.size, 1.0, 1.0, 1.0, 1.0, 1.0)]
+        several = [[value_of(part) for part in row] for row in self.terms], *self._slopes
+        return min(_reach(series, scales, of_values=i == 0) for i, series in enumerate(several))
+
+    @property
+    def _slopes(self) -> Iterator[list[list[float]]]:
+        """The coefficients of the slopes by each parameter."""
+        count = max(len(slopes_of(row[-1], 0)) for row in self.terms)
+        rows = [[slopes_of(part, count) for part in row] for row in self.terms]
+        yield from ([[float(slopes[j]) for slopes in row] for row in rows] for j in range(count))
 
     def at(self, tau: Scalar) -> list[Scalar]:
         """Return σ, c, s, `up` and the works after some τ."""
@@ -155,6 +170,20 @@ def polynomial(series: Sequence[Scalar], tau: Scalar) -> Scalar:
     found: Scalar = 0.0
     for part in reversed(series):
         found = found * tau + part
+    return found
+
+
+def _reach(series: Sequence[Sequence[float]], scales: Sequence[float], *, of_values: bool) -> float:
+    """Return how far the last two terms stay as small as they must be beside the scales, or beside the first two."""
+    first, second, *_, before, last = (
+        max(abs(number) / scale for number, scale in zip(column, scales, strict=True))
+        for column in zip(*series, strict=True)
+    )
+    found = math.inf
+    for share, power in ((before, _TERMS - 2), (last, _TERMS - 1)):
+        if share > 0:
+            sizes = ((1.0, 0),) if of_values else ((first, 0), (second, 1))
+            found = min(found, max((_PRECISION * size / share) ** (1.0 / (power - k)) for size, k in sizes))
     return found
 
 

@@ -249,6 +249,8 @@ class VariationalRun:
             numbers: Any = np.array(state, dtype=object)
             known = transitions.jolted(self.duals, law, kink, numbers) if stop.name == JOLT else None
             return ZeroCrossing(stop.time, stop.name, numbers, known)
+        if stop.name in law.handed_on:  # the same motion goes on by another law, whenever it is handed on
+            return ZeroCrossing(stop.time, stop.name, np.array(state, dtype=object))
         state = self._with_direction(law, state)
         rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
         moved = self._moved(law, stop, state, rates)
