@@ -303,3 +303,22 @@ def test_the_clock_is_a_number_of_any_scenario(name: str) -> None:
     """Also where the support is faster then, and where a slip ends in nothing to the last digit."""
     found = tr.sensitivities(name, "start.time", duration=0.3, every=0.1)
     assert found.passed
+
+
+@pytest.mark.parametrize("draw", range(40))
+def test_when_a_ball_grips_has_the_derivative_of_its_formula(draw: int) -> None:
+    """Slip along a line ends after |s|/(μg(1 + 1/k)), and how near the last look comes to that end is chance."""
+    random = np.random.default_rng(draw)
+    mu, k, (v_x, v_y), spin = random.uniform(0.03, 0.3), random.uniform(0.3, 0.6), *random.uniform(-0.5, 0.5, (1, 2)), 2
+    Omega_x, Omega_y = random.uniform(-20.0, 20.0, 2)
+    tables = {
+        "gravity": 9.80665,
+        "body": {"kind": "sphere", "radius": 0.03, "mass": 0.17, "inertia_ratio": k},
+        "support": {"kind": "plane", "friction": mu},
+        "start": {"position": [0.1, 0.1], "velocity": [v_x, v_y], "angular_velocity": [Omega_x, Omega_y, spin]},
+        "run": {"duration": 4.0, "every": random.uniform(0.01, 0.05)},
+    }
+    found = tr.sensitivities(tr.Scenario.read(tables), ["start.velocity[0]", "start.angular_velocity[0]"], compared=False)
+    slip = np.array([v_x - 0.03 * Omega_y, v_y + 0.03 * Omega_x])  # s = V + Ω×ρ, with ρ = −a e_z
+    per = slip / np.linalg.norm(slip) / (mu * 9.80665 * (1 + 1 / k))
+    assert found.event_time.values == pytest.approx(np.array([[per[0], 0.03 * per[1]]]), rel=1e-9, abs=1e-12)

@@ -35,6 +35,7 @@ from .outputs import Slopes, slopes_of_samples
 _BRINK = 1e-7  # share of all friction that may be left for a contact to be taken as on the brink of slipping
 _BEFORE = 1e-2  # share of the time in which the motion changes, at which one looks how an event function falls
 _GRAZES = 1e-2  # share of that fall by which it falls on at its zero: less is grazing
+_LEFT = 1e-3  # share of a slip that is all but nothing, of which less has no direction
 _SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
 
 
@@ -168,6 +169,7 @@ class VariationalRun:
         self.varied = VariedSystem.of(duals)
         self.begins: PhaseStart | None = begins  # in duals, where an event was
         self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
+        self.before: list[Any]  # the state that was known last before a stop
 
     def solve(self, start: State, tolerance: float, progress: Progress | None) -> Samples:
         """Follow the body from its start through its phases."""
@@ -193,7 +195,7 @@ class VariationalRun:
                 self.here = now.law, float(piece.times[-1]), unstacked(piece.states[-1].tolist(), size)
             stop = piece.stop
             if stop is not None:
-                self.here = now.law, stop.time, unstacked(stop.state_vector.tolist(), size)
+                self.before, self.here = self.here[2], (now.law, stop.time, unstacked(stop.state_vector.tolist(), size))
                 self.stopped(now.law, stop)
                 stop = ZeroCrossing(stop.time, stop.name, stop.state_vector[:size])
             yield Segment(piece.times, piece.states[:, :size], stop)
@@ -261,13 +263,20 @@ class VariationalRun:
         return ZeroCrossing(Dual(stop.time, moved), stop.name, np.array(there, dtype=object))  # type: ignore[arg-type]
 
     def _with_direction(self, law: Law, state: list[Dual]) -> list[Dual]:
-        """Return the same with a slip less than all but nothing, as it was, where it has ended to the last digit."""
-        contact, slips, others = state[: len(CONTACT)], state[len(CONTACT) :][:3], state[len(CONTACT) + 3 :]
-        if "grip" not in law.ends or any(one.value for one in slips):
+        """Return the same with a slip less than all but nothing, as it was, where only rounding is left of it."""
+        if "grip" not in law.ends:
             return state
+        first, last = len(CONTACT), len(CONTACT) + 3
         near, *direction = self.event_parameters[law.weightless :][:4]
-        size = 1e-3 * math.sqrt(near)
-        return [*contact, *(Dual(size * part, one.slopes) for part, one in zip(direction, slips, strict=True)), *others]
+        size, slips = _LEFT * math.sqrt(near), state[first:last]
+        if math.hypot(*(one.value for one in slips)) > size:
+            return state
+        before = [one.value for one in self.before[first:last]]
+        length = math.hypot(*before)
+        if length > math.sqrt(near):  # it may have turned since it began
+            direction = [part / length for part in before]
+        slips = [Dual(size * part, one.slopes) for part, one in zip(direction, slips, strict=True)]
+        return [*state[:first], *slips, *state[last:]]
 
     def _moved(self, law: Law, stop: ZeroCrossing, state: list[Dual], rates: list[float]) -> tuple[float, ...]:
         """Return how the instant of a stop changes with the parameters."""
