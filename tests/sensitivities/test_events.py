@@ -235,6 +235,20 @@ def test_a_run_through_events_has_the_derivatives_of_its_runs(name: str) -> None
     assert tuple(found.data.kind.values) == kinds
 
 
+@pytest.mark.parametrize("name", EVENTS)
+def test_by_numbers_of_the_start_alone_they_are_the_same(name: str) -> None:
+    """Then the system itself is in plain numbers, and only the state is not."""
+    tables, keys, _, times = tables_of(name)
+    scenario = tr.Scenario.read(tables)
+    some = [key for key in keys if key.startswith("start")] or ["start.position[0]"]
+    alone = tr.sensitivities(scenario, some, duration=times[-1])
+    beside = tr.sensitivities(scenario, [*some, "gravity"], duration=times[-1], compared=False)
+    assert alone.passed
+    for quantity in ("position", "velocity", "angular_velocity", "contact_force"):
+        wanted = beside[quantity].values[..., : alone.data.parameter.size]
+        assert alone[quantity].values == pytest.approx(wanted, rel=1e-8, abs=1e-8 * max(1.0, np.abs(wanted).max()))
+
+
 @pytest.mark.parametrize("name", [name for name, (*_, kinds, _) in EVENTS.items() if kinds])
 def test_when_an_event_comes_has_its_derivative(name: str) -> None:
     tables, keys, kinds, _ = tables_of(name)

@@ -105,6 +105,22 @@ def test_turning_that_begins_against_a_resistance_has_no_derivative() -> None:
     assert tr.sensitivities(tr.Scenario.read(rests), "start.position").passed
 
 
+@pytest.mark.parametrize("friction", [None, 0.2, 0.0])
+@pytest.mark.parametrize("velocity", [[0.3, 0.1, 0.0], [0.0, 0.0, 0.0]])
+def test_a_velocity_off_the_support_has_no_derivative_where_a_body_touches(
+    friction: float | None, velocity: list[float]
+) -> None:
+    """The least of it lifts the body off, or makes it strike; a body above the support has it."""
+    support = {"kind": "plane"} if friction is None else {"kind": "plane", "friction": friction}
+    rolls = [-velocity[1] / 0.025, velocity[0] / 0.025, 1.0]
+    start = {"position": [0.1, 0.0], "velocity": velocity, "angular_velocity": [0, 0, 1.0] if friction else rolls}
+    touches, flies = (
+        tr.Scenario.read(level(support=support, start={**start, "height": height})) for height in (0.0, 0.01)
+    )
+    assert "change alone without" in refusal("start.velocity[2]", touches)
+    assert tr.sensitivities(flies, "start.velocity[2]", duration=0.02, every=0.01).passed
+
+
 def test_friction_with_nothing_to_spare_is_on_the_brink() -> None:
     alpha = 0.3
     exactly = 2 / 7 * math.tan(alpha)  # what a solid ball takes to roll down

@@ -189,7 +189,8 @@ class CreepingLaw(SlippingLaw):
 
     def direction(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
         """Return ŝ."""
-        return Vector(*python_law(system, self).found(time, list(map(as_float, numbers))))
+        state = list(map(as_float, numbers))
+        return Vector(*python_law(system, self, time=time, state=state).found(time, state))
 
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ŝ."""

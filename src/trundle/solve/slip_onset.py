@@ -52,7 +52,7 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     """
     law = RollingLaw() if law is None else law
     time, numbers = at.state.time, law.state_vector(at)
-    rates = python_law(system, law).rates
+    rates = python_law(system, law, time=time, state=numbers).rates
     moment = _FIRST * law.moment(system, at, rates(time, numbers))
 
     def later(wait: float) -> tuple[ContactState, _Growth | None]:

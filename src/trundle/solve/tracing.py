@@ -104,7 +104,7 @@ def python_law(
     >>> law.rates(0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])[0], law.names
     (2.0, ('lift',))
     """
-    if not system.support.surface.recordable or has_duals(system):
+    if not system.support.surface.recordable or has_duals((system, *vars(law).values(), *state)):
         return _untraced(system, law, event_parameters, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *event_parameters]

@@ -113,7 +113,7 @@ def method_for(system: RollingSystem) -> Any:
 
 
 def check_start(system: RollingSystem, begins: PhaseStart, first: State, names: Sequence[str]) -> None:
-    """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
+    """Refuse numbers of a start that alone would make slip what rolls, lift what slips, or turn what does not turn."""
     given = ContactState.of(system, first)
     turning = state_turning(given.contact, given.Omega)
     if system.resisted and value_of(turning.norm() * given.arm) <= SLIP_TOLERANCE * given.speed:
@@ -125,6 +125,10 @@ def check_start(system: RollingSystem, begins: PhaseStart, first: State, names: 
         rule = "must name numbers that change alone without making a body slip that rolls at the start"
         remedy = 'Both velocities are given: let one follow, by `spin` or by `velocity = "rolling"`.'
         _refuse(given.V - at.V, given, names, rule, remedy)
+    elif begins.law.code == SLIPPING:
+        rule = "must name numbers that change alone without lifting a body that slips at the start, or pressing it on"
+        remedy = "It would come off one way and land the other. Let it start above the support, by `height`."
+        _refuse(given.contact.normal * given.approach, given, names, rule, remedy)
 
 
 def _refuse(apart: Vector, at: ContactState, names: Sequence[str], rule: str, remedy: str) -> None:
