@@ -1,4 +1,4 @@
-"""A number of a state that happens to be 0 is no case of its own: each law has the rates there that it has beside it."""
+"""A number of a state that happens to be 0 is no case of its own: a law has the rates there that it has beside it."""
 
 from __future__ import annotations
 

@@ -196,6 +196,28 @@ EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[
         ("rim",),
         (0.1, 0.3),
     ),
+    "a ball rolls to and fro across the crease of a force": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "tilt": 0.01},
+            "loads": [{"kind": "potential", "formula": "0.3*abs(x)"}],
+            "start": {"position": [-0.02, 0.0], "velocity": [0.1, 0.2]},
+        },
+        ("support.tilt", "start.velocity[0]", "start.position[0]", "body.mass"),
+        (),
+        (0.1, 0.3, 0.5, 0.8),
+    ),
+    "a ball falls through the crease of a force": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "restitution": 0.5},
+            "loads": [{"kind": "potential", "formula": "0.5*abs(z - 0.05)"}],
+            "start": {"position": [0.1, 0.0], "velocity": [0.2, 0.0, 0.1], "height": 0.04},
+        },
+        ("start.height", "start.velocity[2]", "body.mass", "gravity"),
+        ("land",),
+        (0.05, 0.09, 0.15),
+    ),
     "a ball comes to rest": (
         {
             "body": BALL,
@@ -291,6 +313,28 @@ def test_without_the_saltation_the_derivatives_are_wrong(name: str, monkeypatch:
     assert wrong.passed is False
 
 
+def test_across_a_crease_they_are_those_of_the_formula() -> None:
+    """Under U = c |x| a ball rolls as x = −d + vt + at²/2 to the crease, and from there as v₁τ − aτ²/2."""
+    c, d, v, mass = 0.05, 0.1, 0.2, 0.2
+    a = c / (mass * 7 / 5)
+    tables = {
+        "body": {"kind": "solid-sphere", "radius": 0.03, "mass": mass},
+        "support": {"kind": "plane"},
+        "loads": [{"kind": "potential", "formula": f"{c}*abs(x)"}],
+        "start": {"position": [-d, 0], "velocity": [v, 0]},
+        "run": {"duration": 1.0, "every": 0.1},
+    }
+    found = tr.sensitivities(tr.Scenario.read(tables), "start.velocity[0]")
+    assert found.passed
+    fast = np.sqrt(v * v + 2 * a * d)  # v₁
+    there = (fast - v) / a
+    t = found.data.time.values
+    # ∂v₁/∂v = v/v₁ and ∂t₁/∂v = (v/v₁ − 1)/a, so that τ gets less by that.
+    later = v / fast * (t - there) - (fast - a * (t - there)) * (v / fast - 1) / a
+    wanted = np.where(t < there, t, later)
+    assert found.position.sel(axis="x").values.squeeze() == pytest.approx(wanted, abs=1e-9)
+
+
 def test_a_later_start_moves_all_that_follows() -> None:
     """A ball that slips as a billiard ball does: x = vτ − μgτ²/2 and then 5/7 v, with τ = t − t₀."""
     mu, v, t0 = 0.2, 1.0, 0.3
@@ -332,7 +376,9 @@ def test_when_a_ball_grips_has_the_derivative_of_its_formula(draw: int) -> None:
         "start": {"position": [0.1, 0.1], "velocity": [v_x, v_y], "angular_velocity": [Omega_x, Omega_y, spin]},
         "run": {"duration": 4.0, "every": random.uniform(0.01, 0.05)},
     }
-    found = tr.sensitivities(tr.Scenario.read(tables), ["start.velocity[0]", "start.angular_velocity[0]"], compared=False)
+    found = tr.sensitivities(
+        tr.Scenario.read(tables), ["start.velocity[0]", "start.angular_velocity[0]"], compared=False
+    )
     slip = np.array([v_x - 0.03 * Omega_y, v_y + 0.03 * Omega_x])  # s = V + Ω×ρ, with ρ = −a e_z
     per = slip / np.linalg.norm(slip) / (mu * 9.80665 * (1 + 1 / k))
     assert found.event_time.values == pytest.approx(np.array([[per[0], 0.03 * per[1]]]), rel=1e-9, abs=1e-12)

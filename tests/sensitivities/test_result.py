@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from functools import cache
 from typing import Any
 
@@ -102,6 +103,16 @@ def test_a_fault_in_the_derivatives_fails_the_comparison(method: str, monkeypatc
     wrong = tr.sensitivities("tilted-turntable", "support.tilt", duration=1.0, method=method)
     assert wrong.passed is False
     assert "differs from differences of runs" in str(wrong)
+
+
+def test_where_runs_part_as_far_as_they_can_there_is_no_verdict() -> None:
+    """A derivative that grows by e³ a second is right for long after a difference of runs has ended in their size."""
+    text = tr.Scenario.load("chaplygin-ball-on-turntable").to_toml()
+    fast = tr.Scenario.loads(re.sub(r"(?m)^rate = .*$", "rate = 67.9", text))
+    result = tr.sensitivities(fast, "body.mass", duration=10.0, every=0.05)
+    assert float(abs(result.position[-1]).max()) > 1e6
+    assert result.passed is None
+    assert "the motion parts too fast" in str(result)
 
 
 def test_numbers_at_a_limit_are_left_out_of_the_comparison_and_named() -> None:

@@ -29,7 +29,7 @@ class Agreement:
     # the largest difference, as a share of the largest derivative of its quantity; not a number where nothing could be
     # compared
     apart: float
-    sure: float  # how well the differences themselves are known, as such a share
+    sure: float  # how well the differences themselves are known, as a share of the largest
     samples: int  # at how many samples they were compared: those in the same phase in all runs
     left_out: tuple[str, ...] = ()  # the numbers that could not be changed both ways, such as a drag of 0
 
@@ -96,10 +96,11 @@ def _compared(
             for (up, down), part in ((far, 1.0), (near, 0.5))
         )
         found = followed.slopes[name][first:][:size][everywhere][:, :, usable] @ np.array([steps[j] for j in usable])
-        values = float(np.abs(getattr(here, name)).max())
-        largest = max(float(np.abs(found).max()), 1e-3 * share * values, 1e-300)
-        apart = max(apart, float(np.abs(found - (4 * narrow - wide) / 3).max()) / largest)
-        sure = max(sure, float(np.abs(wide - narrow).max()) / 3 / largest)
+        least = max(1e-3 * share * float(np.abs(getattr(here, name)).max()), 1e-300)
+        of_runs = (4 * narrow - wide) / 3
+        apart = max(apart, float(np.abs(found - of_runs).max()) / max(float(np.abs(found).max()), least))
+        # Of its own size: where runs part as far as they can, differences are nothing beside a derivative that grows.
+        sure = max(sure, float(np.abs(wide - narrow).max()) / 3 / max(float(np.abs(of_runs).max()), least))
     return Agreement(apart, sure, int(everywhere.sum()), left_out)
 
 

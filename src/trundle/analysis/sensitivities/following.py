@@ -35,6 +35,9 @@ from .outputs import Slopes, slopes_of_samples
 _BRINK = 1e-7  # share of all friction that may be left for a contact to be taken as on the brink of slipping
 _BEFORE = 1e-2  # share of the time in which the motion changes, at which one looks how an event function falls
 _GRAZES = 1e-2  # share of that fall by which it falls on at its zero: less is grazing
+# Share of the time in which the motion changes, at which one looks at the rates beside a corner of a load, and the
+# share of them by which they may differ there and not jump.
+_BESIDE, _STEADY = 1e-9, 1e-7
 _LEFT = 1e-3  # share of a slip that is all but nothing, of which less has no direction
 _SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
 
@@ -174,6 +177,7 @@ class VariationalRun:
         self.begins: PhaseStart | None = begins  # in duals, where an event was
         self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
         self.before: list[Any]  # the state that was known last before a stop
+        self.turned: dict[str, float] = {}  # when each corner was passed last
 
     def solve(self, start: State, tolerance: float, progress: Progress | None) -> Samples:
         """Follow the body from its start through its phases."""
@@ -206,7 +210,9 @@ class VariationalRun:
 
     def remember(self, follows: Callable[[], PhaseStart], law: Law, stop: ZeroCrossing) -> PhaseStart:
         """Return what follows a stop, and keep the same in duals."""
-        if not stop.name.startswith(CORNER):  # there the same goes on
+        if stop.name.startswith(CORNER):  # there the same goes on
+            self._turn_corner(law, stop)
+        else:
             self.begins = phases.following_stop(self.duals, law, self._crossing(law, stop))
         return follows()
 
@@ -265,6 +271,29 @@ class VariationalRun:
             Dual(one.value, tuple(s + rate * m for s, m in zip(one.slopes, moved, strict=True))) for one, rate in pairs
         ]
         return ZeroCrossing(Dual(stop.time, moved), stop.name, np.array(there, dtype=object))  # type: ignore[arg-type]
+
+    def _turn_corner(self, law: Law, stop: ZeroCrossing) -> None:
+        """Let the derivatives jump where a load does: when that is depends on the parameters."""
+        _, _, state = self.here
+        numbers = [one.value for one in state]
+        step = _BESIDE * law.unpack(self.system, stop.time, numbers).moment(self.system)
+        last, self.turned[stop.name] = self.turned.get(stop.name, -math.inf), stop.time
+        if stop.time - last <= step:  # a rounding before it was passed, it has been come to already
+            return
+        rates = law.rates(self.system, stop.time, numbers)
+        before, after = (
+            law.rates(self.system, stop.time + h, [y + h * rate for y, rate in zip(numbers, rates, strict=True)])
+            for h in (-step, step)
+        )
+        jumps = [float(now - was) for now, was in zip(after, before, strict=True)]
+        if max(map(abs, jumps)) <= _STEADY * max(map(abs, before)):
+            return
+        moved = self._moved(law, stop, state, list(map(float, before)))
+        slopes = [
+            tuple(slope - jump * shift for slope, shift in zip(one.slopes, moved, strict=True))
+            for one, jump in zip(state, jumps, strict=True)
+        ]
+        self.here = law, stop.time, [Dual(one.value, row) for one, row in zip(state, slopes, strict=True)]
 
     def _with_direction(self, law: Law, state: list[Dual]) -> list[Dual]:
         """Return the same with a slip less than all but nothing, as it was, where only rounding is left of it."""
