@@ -52,6 +52,17 @@ EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[
         ("slip", "lift"),
         (0.1, 0.2, 0.25, 0.3),
     ),
+    "a ball begins to slip on a dome in wind": (
+        {
+            "body": BALL,
+            "support": {"kind": "dome", "radius": 0.5, "friction": 0.5},
+            "loads": [{"kind": "quadratic-drag", "coefficient": 0.05}],
+            "start": {"position": [0.1, 0.02], "velocity": [0.8, 0.1]},
+        },
+        ("loads[0].coefficient", "start.velocity[0]", "start.position[1]", "body.mass"),
+        ("slip",),
+        (0.1, 0.2, 0.25),
+    ),
     "a ball begins to slip with less friction than it held by": (
         {
             "body": BALL,

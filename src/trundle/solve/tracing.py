@@ -201,5 +201,6 @@ def _untraced(
         return [as_float(part) for vector in corner_events.vectors(system, law, t, y) for part in vector]
 
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
-    names = tuple(corner_events.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()
+    given = event_parameters or (0.0,) * (law.event_parameters + corner_events.count(system))
+    names = tuple(corner_events.all_event_functions(system, law, time, state, given)) if len(state) else ()
     return PythonLaw(rates, stops, names, found, vectors)

@@ -327,8 +327,11 @@ class VariationalRun:
         if stop.name.startswith("near "):  # a square, of what is all but nothing
             return
         wait = _BEFORE * law.unpack(self.system, stop.time, numbers).moment(self.system)
-        before = law.rk4_step(self.system, stop.time, numbers, -wait)
-        stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
+        try:
+            before = law.rk4_step(self.system, stop.time, numbers, -wait)
+            stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
+        except ArithmeticError:
+            raise no_derivative(stop.time, f"the law is singular there ({stop.name})") from None
         if not abs(falls) * wait > _GRAZES * abs(float(stops[stop.name])):
             raise no_derivative(stop.time, f"the event there ({stop.name}) is only just reached")
 
