@@ -299,6 +299,22 @@ def test_when_an_event_comes_has_its_derivative(name: str) -> None:
     assert len(kinds) == len(found.data.kind)
 
 
+@pytest.mark.parametrize("duration", [0.13, 0.15, 0.53])
+@pytest.mark.parametrize("key", ["start.velocity[0]", "start.velocity[1]", "support.friction"])
+def test_when_a_law_grows_singular_has_its_derivative(key: str, duration: float) -> None:
+    """A ring slips in a steep cone until its rim lies closely: a step back from there would lead anywhere."""
+    tables = {
+        "body": {"kind": "ring", "radius": 0.0322989, "mass": 0.781133},
+        "support": {"kind": "cone", "half_angle": 1.39868, "friction": 0.0655, "tangential_restitution": 0.0725993},
+        "start": {"position": [0.0814643, 0.0], "velocity": [0.041712, -0.0600521, -0.115096], "height": 0.0792799},
+        "run": {"duration": duration, "every": 0.01},
+    }
+    found = tr.sensitivities(tr.Scenario.read(tables), key, compared=False)
+    ends = [tr.Scenario.read(changed(tables, key, by)).run("taylor").events[-1] for by in (1e-5, -1e-5)]
+    assert [event.kind for event in ends] == ["curved", "curved"]
+    assert float(found.event_time[-1, 0]) == pytest.approx((ends[0].time - ends[1].time) / 2e-5, rel=1e-7)
+
+
 # Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter. They
 # do where less friction is left than held the body.
 JUMPS = [

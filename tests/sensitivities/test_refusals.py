@@ -121,18 +121,6 @@ def test_a_velocity_off_the_support_has_no_derivative_where_a_body_touches(
     assert tr.sensitivities(flies, "start.velocity[2]", duration=0.02, every=0.01).passed
 
 
-def test_an_end_at_which_the_law_is_singular_has_no_derivative() -> None:
-    """A ring that slips in a steep cone, until it is hollow to the cone as the cone is round."""
-    tables = {
-        "body": {"kind": "ring", "radius": 0.0322989, "mass": 0.781133},
-        "support": {"kind": "cone", "half_angle": 1.39868, "friction": 0.0655004},
-        "start": {"position": [0.0814643, 0.0], "velocity": [0.041712, -0.0600521, -0.115096], "height": 0.0792799},
-        "run": {"duration": 0.53, "every": 0.0145013},
-    }
-    said = refusal("start.velocity[0]", tr.Scenario.read(tables))
-    assert "has no derivative: the law is singular there (curved)" in said
-
-
 def test_friction_with_nothing_to_spare_is_on_the_brink() -> None:
     alpha = 0.3
     exactly = 2 / 7 * math.tan(alpha)  # what a solid ball takes to roll down
