@@ -30,7 +30,7 @@ KINEMATICS = (
     Mutant(
         "T1: 1 + C S taken for 1",
         CONTACT,
-        "along = self.along_support(moved, gap)",
+        "along = self.along_support(moved, 0.0 if gap is None else gap)",
         "along = moved",
         BOWL,
     ),
