@@ -35,9 +35,9 @@ from .outputs import Slopes, slopes_of_samples
 _BRINK = 1e-7  # share of all friction that may be left for a contact to be taken as on the brink of slipping
 _BEFORE = 1e-2  # share of the time in which the motion changes, at which one looks how an event function falls
 _GRAZES = 1e-2  # share of that fall by which it falls on at its zero: less is grazing
-# Share of the time in which the motion changes, at which one looks at the rates beside a corner of a load, and the
-# share of them by which they may differ there and not jump.
-_BESIDE, _STEADY = 1e-9, 1e-7
+# Share of the time in which the motion changes, at which one looks at the rates beside a corner of a load, and how much
+# farther off once more; the share of the rates that is rounding.
+_BESIDE, _WIDER, _STEADY = 1e-9, 8.0, 1e-12
 _LEFT = 1e-3  # share of a slip that is all but nothing, of which less has no direction
 _SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
 
@@ -281,17 +281,19 @@ class VariationalRun:
         if stop.time - last <= step:  # a rounding before it was passed, it has been come to already
             return
         rates = law.rates(self.system, stop.time, numbers)
-        before, after = (
-            law.rates(self.system, stop.time + h, [y + h * rate for y, rate in zip(numbers, rates, strict=True)])
-            for h in (-step, step)
-        )
-        jumps = [float(now - was) for now, was in zip(after, before, strict=True)]
-        if max(map(abs, jumps)) <= _STEADY * max(map(abs, before)):
-            return
-        moved = self._moved(law, stop, state, list(map(float, before)))
+
+        def beside(h: float) -> Array:
+            at = [y + h * rate for y, rate in zip(numbers, rates, strict=True)]
+            return np.array(law.rates(self.system, stop.time + h, at), dtype=float)
+
+        before, jumps = beside(-step), beside(step) - beside(-step)
+        farther = float(np.abs(beside(_WIDER * step) - beside(-_WIDER * step)).max())
+        if _WIDER / 2 * np.abs(jumps).max() < farther or np.abs(jumps).max() <= _STEADY * np.abs(before).max():
+            return  # what jumps does so however near one looks
+        moved = self._moved(law, stop, state, before.tolist())
         slopes = [
             tuple(slope - jump * shift for slope, shift in zip(one.slopes, moved, strict=True))
-            for one, jump in zip(state, jumps, strict=True)
+            for one, jump in zip(state, jumps.tolist(), strict=True)
         ]
         self.here = law, stop.time, [Dual(one.value, row) for one, row in zip(state, slopes, strict=True)]
 
