@@ -121,6 +121,27 @@ def test_numbers_at_a_limit_are_left_out_of_the_comparison_and_named() -> None:
     assert "support.restitution apart" in str(result)
 
 
+def test_numbers_that_cannot_all_change_at_once_are_compared_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A half-cylinder may be tilted, or pushed along its axis; with both it would not roll straight."""
+    tables = {
+        "body": {"kind": "half-cylinder", "radius": 0.1, "mass": 2.0},
+        "support": {"kind": "plane"},
+        "start": {"position": [0, 0], "velocity": [0, 0]},
+        "run": {"duration": 0.5, "every": 0.1},
+    }
+    scenario, wanted = tr.Scenario.read(tables), ["support.tilt", "start.velocity[1]", "gravity"]
+    result = tr.sensitivities(scenario, wanted)
+    assert result.passed
+    assert not result.agreement.left_out
+    right = following.slopes_of_samples
+
+    def off(*given: Any) -> Any:
+        return {name: values * np.array([1.0, 1.0 + 1e-4, 1.0]) for name, values in right(*given).items()}
+
+    monkeypatch.setattr(following, "slopes_of_samples", off)
+    assert tr.sensitivities(scenario, wanted).passed is False
+
+
 def test_without_anything_to_compare_there_is_no_verdict() -> None:
     result = tr.sensitivities("superball", "support.restitution", duration=1.0)
     assert result.passed is None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -24,7 +25,7 @@ _QUANTITIES = ("position", "velocity", "angular_velocity")
 
 @dataclass(frozen=True)
 class Agreement:
-    """How far the derivatives are from differences of runs in which all numbers are changed at once."""
+    """How far the derivatives are from differences of runs in which all numbers are changed at once, or each."""
 
     # the largest difference, as a share of the largest derivative of its quantity; not a number where nothing could be
     # compared
@@ -54,10 +55,35 @@ Solve = Callable[[RollingSystem, State, Array], Samples]
 
 
 def compare(scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, times: Array, solve: Solve) -> Agreement:
-    """Change all numbers at once, a little up and down, and compare what the runs differ by with the derivatives."""
+    """Change all numbers at once, a little up and down, and compare what the runs differ by with the derivatives.
+
+    Where no run begins so with all of them changed, each is changed by itself.
+    """
+    best = partial(_best, scenario, wanted, followed, times, solve)
+    together = best(range(len(wanted)))
+    if together.samples:
+        return together
+    alone = [best([j]) for j in range(len(wanted))]
+    told = [one for one in alone if one.samples]
+    if not told:
+        return together
+    left_out = tuple(key.name for key, one in zip(wanted, alone, strict=True) if not one.samples)
+    largest = (max(one.apart for one in told), max(one.sure for one in told))
+    return Agreement(*largest, min(one.samples for one in told), left_out)
+
+
+def _best(
+    scenario: ScenarioFile,
+    wanted: Sequence[Key],
+    followed: Followed,
+    times: Array,
+    solve: Solve,
+    which: Sequence[int],
+) -> Agreement:
+    """Change some of the numbers at once, by less where that tells more."""
     best: Agreement | None = None
     for share in _STEPS:
-        found = _compared(scenario, wanted, followed, times, solve, share)
+        found = _compared(scenario, wanted, followed, times, solve, which, share)
         best = found if best is None or found.sure < best.sure else best
         if best.sure <= _ENOUGH / _SURE or not best.samples:
             break
@@ -65,11 +91,17 @@ def compare(scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, t
 
 
 def _compared(
-    scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, times: Array, solve: Solve, share: float
+    scenario: ScenarioFile,
+    wanted: Sequence[Key],
+    followed: Followed,
+    times: Array,
+    solve: Solve,
+    which: Sequence[int],
+    share: float,
 ) -> Agreement:
     steps = [share * _size(key, wanted) * (-1) ** j for j, key in enumerate(wanted)]
-    usable = [j for j, key in enumerate(wanted) if _may_change(scenario, key, steps[j])]
-    left_out = tuple(key.name for j, key in enumerate(wanted) if j not in usable)
+    usable = [j for j in which if _may_change(scenario, wanted[j], steps[j])]
+    left_out = tuple(wanted[j].name for j in which if j not in usable)
     none = Agreement(np.nan, np.nan, 0, left_out)
     if not usable:
         return none
