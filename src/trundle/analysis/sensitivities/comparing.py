@@ -59,7 +59,7 @@ def compare(scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, t
 
     Where no run begins so with all of them changed, each is changed by itself.
     """
-    best = partial(_best, scenario, wanted, followed, times, solve)
+    best = partial(_best, partial(_compared, scenario, wanted, followed, times, solve))
     together = best(range(len(wanted)))
     if together.samples:
         return together
@@ -72,18 +72,11 @@ def compare(scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, t
     return Agreement(*largest, min(one.samples for one in told), left_out)
 
 
-def _best(
-    scenario: ScenarioFile,
-    wanted: Sequence[Key],
-    followed: Followed,
-    times: Array,
-    solve: Solve,
-    which: Sequence[int],
-) -> Agreement:
+def _best(compared: Callable[[Sequence[int], float], Agreement], which: Sequence[int]) -> Agreement:
     """Change some of the numbers at once, by less where that tells more."""
     best: Agreement | None = None
     for share in _STEPS:
-        found = _compared(scenario, wanted, followed, times, solve, which, share)
+        found = compared(which, share)
         best = found if best is None or found.sure < best.sure else best
         if best.sure <= _ENOUGH / _SURE or not best.samples:
             break
