@@ -159,7 +159,7 @@ EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[
                 "kind": "plane",
                 "friction": 0.1,
                 "tangential_restitution": 0.9,
-                "motion": {"kind": "free-axle", "inertia": 1e-5},
+                "motion": {"kind": "free-axle", "inertia": 1e-4},
             },
             "start": {"position": [0.2, 0.1], "velocity": [0.3, 0.1, -0.5], "spin": 1.0, "height": 0.02},
         },
@@ -313,6 +313,32 @@ def test_when_a_law_grows_singular_has_its_derivative(key: str, duration: float)
     ends = [tr.Scenario.read(changed(tables, key, by)).run("taylor").events[-1] for by in (1e-5, -1e-5)]
     assert [event.kind for event in ends] == ["curved", "curved"]
     assert float(found.event_time[-1, 0]) == pytest.approx((ends[0].time - ends[1].time) / 2e-5, rel=1e-7)
+
+
+def test_a_landing_whose_slip_settles_at_once_has_slopes() -> None:
+    """On a table a thousand times as light its direction stands still, and only the slopes tell how fast it settles."""
+    tables = {
+        "body": {"kind": "solid-sphere", "radius": 0.197317, "density": 906.965},
+        "support": {
+            "kind": "revolution",
+            "formula": "0.426546*r**2 - 0.426766*r2**4 + -0.0211967*exp(r2)",
+            "friction": 0.100958,
+            "kinetic_friction": 0.0324191,
+            "tangential_restitution": 0.950037,
+            "motion": {"kind": "free-axle", "inertia": 0.00125555},
+        },
+        "start": {
+            "position": [-0.038366, 0.239471],
+            "velocity": [0.0, 0.176091],
+            "spin": -0.447463,
+            "height": 0.132589,
+            "support": [-1.5707963267948966, 0.0],
+        },
+        "run": {"duration": 0.17, "every": 0.017},
+    }
+    found = tr.sensitivities(tr.Scenario.read(tables), "support.tilt")
+    assert tuple(found.data.kind.values) == ("land",)
+    assert found.passed
 
 
 # Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter. They
