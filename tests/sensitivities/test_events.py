@@ -366,15 +366,19 @@ def test_without_the_saltation_the_derivatives_are_wrong(name: str, monkeypatch:
     assert wrong.passed is False
 
 
+@pytest.mark.parametrize("shares", [(1.0,), (0.6, 0.4)])
 @pytest.mark.parametrize("c", [0.05, 1e-6, -0.01])
-def test_across_a_crease_they_are_those_of_the_formula(c: float) -> None:
-    """Under U = c |x| a ball rolls as x = −d + vt + at²/2 to the crease, and from there as v₁τ − aτ²/2."""
+def test_across_a_crease_they_are_those_of_the_formula(c: float, shares: tuple[float, ...]) -> None:
+    """Under U = c |x| a ball rolls as x = −d + vt + at²/2 to the crease, and from there as v₁τ − aτ²/2.
+
+    Two loads may have their creases in one place.
+    """
     d, v, mass = 0.1, 0.2, 0.2
     a = c / (mass * 7 / 5)
     tables = {
         "body": {"kind": "solid-sphere", "radius": 0.03, "mass": mass},
         "support": {"kind": "plane"},
-        "loads": [{"kind": "potential", "formula": f"{c}*abs(x)"}],
+        "loads": [{"kind": "potential", "formula": f"{c * share}*abs(x)"} for share in shares],
         "start": {"position": [-d, 0], "velocity": [v, 0]},
         "run": {"duration": 1.0, "every": 0.1},
     }

@@ -177,7 +177,7 @@ class VariationalRun:
         self.begins: PhaseStart | None = begins  # in duals, where an event was
         self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
         self.before: list[Any]  # the state that was known last before a stop
-        self.turned: dict[str, float] = {}  # when each corner was passed last
+        self.turned = -math.inf  # when a corner was passed last
 
     def solve(self, start: State, tolerance: float, progress: Progress | None) -> Samples:
         """Follow the body from its start through its phases."""
@@ -277,8 +277,8 @@ class VariationalRun:
         _, _, state = self.here
         numbers = [one.value for one in state]
         step = _BESIDE * law.unpack(self.system, stop.time, numbers).moment(self.system)
-        last, self.turned[stop.name] = self.turned.get(stop.name, -math.inf), stop.time
-        if stop.time - last <= step:  # a rounding before it was passed, it has been come to already
+        last, self.turned = self.turned, stop.time
+        if stop.time - last <= step:  # come to already, a rounding before it is passed, or another in the same place
             return
         rates = law.rates(self.system, stop.time, numbers)
 
