@@ -21,6 +21,7 @@ _PRECISION = 1e-18  # of what the last two of them are, as shares
 _MOST_STEPS = 2000
 _JAMMED = math.exp(30.0)  # times as fast as at first: what becomes so fast goes on without end
 _ROUNDING = 2.0**-52
+_FARTHEST = 1e9  # τ, where a series ends by itself
 
 
 @dataclass(frozen=True)
@@ -174,16 +175,15 @@ def polynomial(series: Sequence[Scalar], tau: Scalar) -> Scalar:
 
 
 def _reach(series: Sequence[Sequence[float]], scales: Sequence[float], *, of_values: bool) -> float:
-    """Return how far the last two terms stay as small as they must be beside the scales, or beside the first two."""
-    first, second, *_, before, last = (
+    """Return how far the last two terms stay as small as they must be beside the scales, or beside those before."""
+    *others, before, last = (
         max(abs(number) / scale for number, scale in zip(column, scales, strict=True))
         for column in zip(*series, strict=True)
     )
-    found = math.inf
+    found, beside = _FARTHEST, [1.0] if of_values else others
     for share, power in ((before, _TERMS - 2), (last, _TERMS - 1)):
         if share > 0:
-            sizes = ((1.0, 0),) if of_values else ((first, 0), (second, 1))
-            found = min(found, max((_PRECISION * size / share) ** (1.0 / (power - k)) for size, k in sizes))
+            found = min(found, max((_PRECISION * size / share) ** (1.0 / (power - k)) for k, size in enumerate(beside)))
     return found
 
 
