@@ -1,11 +1,12 @@
-"""Where a body comes off that friction hardly held: the cone's tip, at which friction only seems to give way first."""
+"""Whether a body comes off where N is all but nothing: at the cone's tip, and where N only touches zero."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from ..mechanics.system import RollingSystem
 from . import corner_events
+from .contact_state import ContactState
 from .laws import Law
 from .tracing import python_law
 
@@ -13,6 +14,7 @@ _AT_HAND = 1e-3  # of the time in which the motion changes
 _CLOSER = 12  # times ten
 _NEARLY = 1e-3  # share of the usual force above which N is no double root's
 _UNASKED = 1e-7  # share of what friction can give when the body is pressed on as usual
+_ROUNDING = 1e-12  # share of the forces at hand, of which a pull of the support may be
 
 
 def lift_at_hand(
@@ -36,15 +38,8 @@ def lift_at_hand(
     """
     from scipy.optimize import brentq
 
-    plain = python_law(system, law, (*event_parameters, *[0.0] * corner_events.count(system)), time, numbers)
-    which = plain.names.index("lift"), plain.names.index(name)
-
-    def look(wait: float) -> tuple[float, float]:
-        found = plain.event_functions(time + wait, law.rk4_step(system, time, numbers, wait, plain.rates))
-        return found[which[0]], found[which[1]]
-
     at = law.unpack(system, time, numbers)
-    moment = law.moment(system, at, plain.rates(time, numbers))
+    look, moment = _looks(system, law, at, numbers, ("lift", name), event_parameters)
     now = look(0.0)[0]
     changes = abs(look(_AT_HAND * moment)[0] - now) / _AT_HAND  # in such a time, N
     if now > _NEARLY * max(changes, at.forces(system)):
@@ -60,3 +55,45 @@ def lift_at_hand(
         holds = float(system.resistance)
     usual = (now - later) / limit * moment  # N
     return time + wait if -look(wait)[1] <= (_UNASKED * holds * usual) ** 2 else None
+
+
+def only_touches(
+    system: RollingSystem, law: Law, at: ContactState, numbers: Sequence[float], event_parameters: Sequence[float]
+) -> bool:
+    """Tell whether N, which has come to zero, rises again at once: the support has pulled by no more than rounding.
+
+    A ball that turns back on its way round an upright pipe is pressed on by m v²/(R − r), a square, before and after.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.solve.laws import RollingLaw
+    >>> shaken = tr.Support(tr.Plane(), motion=tr.Shake((0.0, 0.0, 0.01), 45.0), friction=0.3)
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 1.0), shaken)
+    >>> law, state = RollingLaw(), system.place(time=0.011234198)  # N = 0 at asin(g/(Aω²))/ω, and falls
+    >>> only_touches(system, law, ContactState.of(system, state), law.pack(system, state), ())
+    False
+    """
+    look, moment = _looks(system, law, at, numbers, ("lift",), event_parameters)
+    least = -_ROUNDING * at.forces(system)
+    return all(look(_AT_HAND * moment * 0.1**k)[0] >= least for k in range(_CLOSER))
+
+
+def _looks(
+    system: RollingSystem,
+    law: Law,
+    at: ContactState,
+    numbers: Sequence[float],
+    names: Sequence[str],
+    event_parameters: Sequence[float],
+) -> tuple[Callable[[float], list[float]], float]:
+    """Return what gives some of a law's event functions a little later, and the time in which the motion changes, s."""
+    time = at.state.time
+    plain = python_law(system, law, (*event_parameters, *[0.0] * corner_events.count(system)), time, numbers)
+    which = [plain.names.index(name) for name in names]
+
+    def look(wait: float) -> list[float]:
+        found = plain.event_functions(time + wait, law.rk4_step(system, time, numbers, wait, plain.rates))
+        return [found[index] for index in which]
+
+    return look, law.moment(system, at, plain.rates(time, numbers))

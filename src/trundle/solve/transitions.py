@@ -17,7 +17,7 @@ from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
-from .coming_off import lift_at_hand
+from .coming_off import lift_at_hand, only_touches
 from .contact_state import WEIGHTLESS, ContactState, floats, moment
 from .creeping import GROWN, CreepingLaw
 from .laws import (
@@ -128,7 +128,7 @@ def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     if name == "jam":
         raise jammed(at.state.time, JAMS)
     if name == "lift":
-        follows = _touching(system, at) if law.weightless else _lifted(system, at)
+        follows = _touching(system, at) if _stays(system, law, at, stop) else _lifted(system, at)
         return follows if isinstance(follows.law, FlightLaw) else replace(follows, events=())
     if name in ("grip", "stop"):
         at = _come_to_it(system, law, at, stop.state_vector, name)
@@ -314,6 +314,14 @@ def _pull(system: RollingSystem, at: ContactState) -> float:
     coordinates = at.state.support
     free = unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, coordinates)
     return -float(value_of(free.opening))
+
+
+def _stays(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossing) -> bool:
+    """Tell whether a body stays in touch, or is looked at again, although N has come to zero."""
+    if law.weightless:
+        return True
+    numbers = stop.state_vector.tolist()
+    return only_touches(system, law, at, numbers, _extras(system, law, at, numbers))
 
 
 def _opens(system: RollingSystem, at: ContactState) -> bool:

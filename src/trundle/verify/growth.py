@@ -116,7 +116,7 @@ def growth(
             starts.append(begin)
     until = min([float(times[-1]), *(parted(first, other) for other in others)])
     count = min([len(first.events), *(same_events(first.events, other.events) for other in others)])
-    end, times = times[-1], reduce(np.intersect1d, (other.time for other in others), times)
+    end, times = times[-1], reduce(np.intersect1d, (run.time for run in [first, *others]), times)
     if not others or not times.size:
         return Growth(times, np.zeros(times.size), np.zeros(0), until)
     pairs = [at_the_same_times(first.part(np.isin(first.time, times)), other) for other in others]
