@@ -350,6 +350,29 @@ def test_the_pair_deep_in_a_narrow_cone_drifts_by_rounding_of_the_height_alone(s
     assert not figure.passed
 
 
+@pytest.mark.parametrize("spin", [0.0, 2.0, -5.0])
+@pytest.mark.parametrize("velocity", [(0.3, 6.0), (0.3, -6.0), (-2.0, 9.0), (1.0, 1.0)])
+def test_the_pair_is_carried_round_a_tube_as_often_as_the_ball_goes(velocity: tuple[float, float], spin: float) -> None:
+    # Round a closed meridian the equation along it does not come back to what it was: each round has its own share.
+    system = system_of(tr.Body.solid_sphere(0.02, 1.0), tr.TorusTrack(0.5, 0.1), motion=tr.Spin(spin))
+    run = tr.simulate(system, system.place((0.0, 0.0), velocity), 1.5, 0.002)
+    at, ends = run.samples, [event.time for event in run.events if event.kind == "lift"]
+    rolled = at.part(at.time < min(ends, default=np.inf))
+    x, z = np.hypot(*rolled.contact[:, :2].T) - 0.5, rolled.contact[:, 2]
+    turns = np.ptp(np.unwrap(np.arctan2(z, x))) / (2 * math.pi)
+    assert turns > (1.5 if not ends and velocity[1] != 1.0 else 0.25)
+    assert drift(PAIR, system, rolled) <= 1e-12
+    late = replace(rolled, angular_velocity=rolled.angular_velocity * (1 + 1e-10 * rolled.time)[:, None])
+    assert drift(PAIR, system, late) > 1e-12
+
+
+def test_where_a_ball_may_have_gone_round_a_tube_between_two_samples_nothing_is_said() -> None:
+    system = system_of(tr.Body.solid_sphere(0.02, 1.0), tr.TorusTrack(0.5, 0.1))
+    run = tr.simulate(system, system.place((0.0, 0.0), (-2.0, 9.0)), 0.9, 0.05)
+    assert not run.events
+    assert NAMED[PAIR].terms(system, _record(system, run.samples)) == []
+
+
 def test_the_pair_is_carried_along_a_short_stretch_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     # Between two slips of a hundred the contact goes a millimetre: no shorter steps are needed there than on all of it.
     taken: list[float] = []

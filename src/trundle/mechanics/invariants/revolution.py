@@ -14,6 +14,7 @@ velocities ([routh1905]; [borisov2002] for the turning surface).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from ..algebra import Vector
@@ -27,7 +28,11 @@ _TOLERANCE = 1e-13
 _STEPS = 48  # of the meridian's stretch, or of R where that is longer: its dense output is then as good as its steps
 _BESIDE = 1e-13  # of a contact's distance from the origin, from the surface: rounding
 _BEGIN = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)  # way from the start, solutions by rows, the one that starts at zero
+_ROWS = (0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (1, 2)  # where the last six of these stand in a matrix
 _WIDER = 8  # times that the stretch is widened, each time to twice what it was
+_GRID = 2001  # contacts, among which the nearest is looked for
+_OVER = 0.05  # of a round, by which its solutions go beyond it to either side
+_BACK = 3  # of the grid's steps: so near to where it begins, a meridian has come back
 
 
 def _has_pair(system: RollingSystem) -> tuple[str, ...]:
@@ -39,13 +44,22 @@ def _has_pair(system: RollingSystem) -> tuple[str, ...]:
     return (ROLLING,) if ball and round_ and steady and loads else ()
 
 
+@dataclass(frozen=True)
+class _Pace:
+    """How fast centres move at their instants, which tells how often a contact went round a closed meridian."""
+
+    time: Any  # (n,): s, or one for all
+    outwards: Any  # (n,): of V, m/s
+    upwards: Any  # (n,)
+
+
 class _Meridian:
     """The linear equation along the meridian, from the latitude of the contact whose centre is nearest to the axis.
 
     There 1/R is largest and tells each rounding; lengths are counted from there, so that theirs are small.
     """
 
-    def __init__(self, system: RollingSystem, distance: Any, height: Any, centre: Any) -> None:
+    def __init__(self, system: RollingSystem, distance: Any, height: Any, centre: Any, pace: _Pace) -> None:
         import numpy as np
 
         self.surface, self.a = system.support.surface, float(system.body.radius)
@@ -56,6 +70,7 @@ class _Meridian:
         self.start = self._on_surface(Vector(float(distance[first]), 0.0, float(height[first])))
         self.out, self.up = distance - self.start[0], height - self.start[1]
         self.size = float(np.hypot(self.out, self.up).max())
+        self.pace, self.first = pace, first
 
     def _on_surface(self, p: Vector) -> tuple[float, float]:
         """Return where on the surface a contact is meant to be: one that is measured may lie beside it."""
@@ -116,7 +131,7 @@ class _Meridian:
         )
 
     def at_each(self) -> Any:
-        """Return the solutions at each contact: an array of 8 rows."""
+        """Return the solutions at each contact, 8 rows; None where it is unknown how often it went round."""
         import numpy as np
 
         if self.size <= 1e-12 * max(1e-300, float(np.abs(self.start).max())):
@@ -124,27 +139,98 @@ class _Meridian:
         reach = 1.1 * self.size
         for _ in range(_WIDER):
             solutions = self.solve(-reach).sol, self.solve(reach).sol
-            rows = _both(solutions, self._placed(solutions))
+            length = self._length(solutions)
+            if length is not None:
+                return self._round(length)
+            rows = _both(solutions, self._placed(solutions, _ends(solutions)))
             if np.hypot(rows[0] - self.out, rows[1] - self.up).max() <= 1e-6 * self.size:
                 break
             reach *= 2
         return rows
 
-    def _placed(self, solutions: tuple[Any, Any]) -> Any:
-        """Return the σ of each contact: the nearest of many, then Newton's method along the meridian."""
+    def _length(self, solutions: tuple[Any, Any]) -> float | None:
+        """Return the length of a meridian that is closed, if the solutions come round to where they begin."""
+        import numpy as np
+
+        grid = np.linspace(*_ends(solutions), _GRID)
+        there = _both(solutions, grid)[:2]
+        apart = np.hypot(*(there - there[:, :1]))
+        back = (apart <= _BACK * (grid[1] - grid[0])) & (np.arange(_GRID) > 2 * _BACK)
+        if not back.any():
+            return None
+        return float(self._closer(solutions, grid[back][:1], *there[:, 0])[0] - grid[0])
+
+    def _round(self, length: float) -> Any:
+        """Return the same from one round of a closed meridian, which the solutions of each round repeat in turn."""
+        import numpy as np
+
+        solutions = self.solve(-_OVER * length).sol, self.solve((1 + _OVER) * length).sol
+        sigma = self._placed(solutions, (0.0, length))
+        rounds = self._rounds(sigma, length)
+        if rounds is None:
+            return None
+        rows, once = _both(solutions, sigma), _affine(solutions[1](length))
+        for count in np.unique(rounds):
+            there = rounds == count
+            after = _affine(rows[:, there]) @ np.linalg.matrix_power(once, int(count))
+            rows[2:, there] = np.stack([after[:, i, j] for i, j in _ROWS])
+        return rows
+
+    def _rounds(self, sigma: Any, length: float) -> Any:
+        """Return how often each contact went round since the first, of which its speed decides; None if it is unclear.
+
+        The centre goes by (1 + aκ)σ̇ along its own meridian.
+        """
+        import numpy as np
+
+        p = self.contact((self.out, self.up))
+        n, S = self.surface.normal(p), self.surface.shape_operator(p)
+        along = Vector(n.z, 0.0 * n.z, -n.x)
+        speed = (self.pace.outwards * along.x + self.pace.upwards * along.z) / (1 + self.a * along.dot(S @ along))
+        times = np.broadcast_to(self.pace.time, sigma.shape)
+        gone = 0.5 * (speed[1:] + speed[:-1]) * np.diff(times)
+        rounds = np.round((gone - np.diff(sigma)) / length)
+        if np.abs([gone, np.diff(sigma) + rounds * length]).max(initial=0.0) > 0.25 * length:
+            return None
+        rounds = np.concatenate([[0.0], np.cumsum(rounds)])
+        return (rounds - rounds[self.first]).astype(int)
+
+    def _placed(self, solutions: tuple[Any, Any], between: tuple[float, float]) -> Any:
+        """Return the σ of each contact: the nearest of many between two, then Newton's method along the meridian."""
         import numpy as np
         from scipy.spatial import cKDTree
 
-        low, high = (float(solution.t_max if solution.t_max > 0 else solution.t_min) for solution in solutions)
-        grid = np.linspace(low, high, 2001)
-        rows = _both(solutions, grid)
-        sigma = grid[cKDTree(rows[:2].T).query(np.column_stack([self.out, self.up]))[1]]
+        grid = np.linspace(*between, _GRID)
+        there = _both(solutions, grid)[:2]
+        nearest = grid[cKDTree(there.T).query(np.column_stack([self.out, self.up]))[1]]
+        return self._closer(solutions, nearest, self.out, self.up)
+
+    def _closer(self, solutions: tuple[Any, Any], sigma: Any, out: Any, up: Any) -> Any:
+        """Return σ moved along the meridian, by Newton's method, to where given contacts are."""
+        import numpy as np
+
+        low, high = _ends(solutions)
         for _ in range(4):
             rows = _both(solutions, sigma)
             n = self.surface.normal(self.contact(rows))
-            step = (self.out - rows[0]) * n.z - (self.up - rows[1]) * n.x
-            sigma = np.clip(sigma + step, low, high)
+            sigma = np.clip(sigma + (out - rows[0]) * n.z - (up - rows[1]) * n.x, low, high)
         return sigma
+
+
+def _ends(solutions: tuple[Any, Any]) -> tuple[float, float]:
+    """Return how far the solutions lead to either side of the start."""
+    return float(solutions[0].t_min), float(solutions[1].t_max)
+
+
+def _affine(rows: Any) -> Any:
+    """Return as a matrix (..., 3, 3) what takes ℓ, w and 1 from the start to where the rows were found."""
+    import numpy as np
+
+    matrix = np.zeros((*rows.shape[1:], 3, 3))
+    for row, (i, j) in zip(rows[2:], _ROWS, strict=True):
+        matrix[..., i, j] = row
+    matrix[..., 2, 2] = 1.0
+    return matrix
 
 
 def _both(solutions: tuple[Any, Any], sigma: Any) -> Any:
@@ -157,7 +243,8 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     """Return the terms of ℓ and w carried along the meridian to the latitude of the record's first contact.
 
     None where the centre comes to the axis, at which the equation along the meridian is singular, or where contacts
-    that were measured lie so far beside the surface that it seems to.
+    that were measured lie so far beside the surface that it seems to, or so far apart that they may have gone round a
+    closed meridian in between.
     """
     import numpy as np
 
@@ -171,10 +258,16 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     centre = np.hypot(*(np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in (r.x, r.y)))
     if centre.min() <= max(_NEAREST * centre.max(), _ON_AXIS * a):
         return []
-    meridian = _Meridian(system, distance, contact[2], centre)
+    moved = [np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in V]
+    outwards = (contact[0] * moved[0] + contact[1] * moved[1]) / np.maximum(distance, 1e-300)
+    times = np.asarray(at.motion.time, dtype=float).reshape(-1)
+    meridian = _Meridian(system, distance, contact[2], centre, _Pace(times, outwards, moved[2]))
     if not meridian.off_axis(_BEGIN) > 0:
         return []
-    A, B, C, D, *turned = meridian.at_each()[2:]
+    rows = meridian.at_each()
+    if rows is None:
+        return []
+    A, B, C, D, *turned = rows[2:]
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
     columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
     columns += [-inverse[:, 0] * turned[0], -inverse[:, 1] * turned[1]]
