@@ -373,6 +373,21 @@ def test_where_a_ball_may_have_gone_round_a_tube_between_two_samples_nothing_is_
     assert NAMED[PAIR].terms(system, _record(system, run.samples)) == []
 
 
+def test_energy_in_a_groove_hardly_wider_than_the_ball_drifts_by_rounding_of_the_place_alone() -> None:
+    # The contact goes a hundred times as far as the centre: its rounding turns the normal, and lifts the ball.
+    pytest.importorskip("heyoka")
+    ball = tr.Body(0.0236, tr.Principal(8.6e-5, 1.22e-4, 1.0e-4), tr.Sphere(0.134903))
+    system = tr.RollingSystem(ball, tr.Support(tr.TorusTrack(1.17132, 0.135072)))
+    start = system.place((-0.05, -0.0452), velocity=(0.05, 0.14))
+    at, method = tr.simulate(system, start, 3.0, 0.02, method="taylor").samples, Method.of("taylor")
+    (figure,) = (figure for figure in drifts(system, at, method) if ENERGY in figure.name)
+    assert figure.passed
+    faster = (1 + 1e-10 * at.time)[:, None]
+    late = replace(at, angular_velocity=at.angular_velocity * faster, velocity=at.velocity * faster)
+    (figure,) = (figure for figure in drifts(system, late, method) if ENERGY in figure.name)
+    assert not figure.passed
+
+
 def test_the_pair_is_carried_along_a_short_stretch_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     # Between two slips of a hundred the contact goes a millimetre: no shorter steps are needed there than on all of it.
     taken: list[float] = []

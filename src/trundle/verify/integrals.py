@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Vector
+from ..mechanics.contact import contact_at
 from ..mechanics.invariants import Invariant, Record, invariants_of
 from ..mechanics.system import RollingSystem
 from ..solve.methods import Method
@@ -76,12 +77,26 @@ def _shown_of_place(system: RollingSystem, at: Samples, record: Record, integral
     for i, direction in enumerate(np.eye(3)):
         steps = _NUDGE * np.abs(at.contact[:, i])
         steps[0] = 0.0
-        shift = Vector.of(steps[:, None] * direction)
-        motion = replace(record.motion, position=record.motion.position + shift)
-        terms = integral.terms(system, replace(record, motion=motion, contact=record.contact + shift))
+        terms = integral.terms(system, _shifted(system, at, record, Vector.of(steps[:, None] * direction)))
         moved[i] = np.abs(_sum_of(terms, at.time.size) - total).max() if terms else 0.0
     turns = pace_of(system, at) * float(np.ptp(at.time))
     return _ROUNDING / _NUDGE * math.sqrt(max(1.0, turns)) * float(moved.sum())
+
+
+def _shifted(system: RollingSystem, at: Samples, record: Record, shift: Vector) -> Record:
+    """Return a motion whose contact has moved a little, and the body with it, as it touches there."""
+    motion, place = record.motion, record.contact + shift
+    if at.phase[0] == FLIGHT:
+        moved = replace(motion, position=motion.position + shift)
+        return replace(record, motion=moved, contact=place)
+    here, there = (
+        contact_at(system, at.time, point, motion.orientation, record.support_coordinates)
+        for point in (record.contact, place)
+    )
+    centre = motion.position + (there.centre - here.centre)
+    turned = there.rolling_velocity(motion.angular_velocity) - here.rolling_velocity(motion.angular_velocity)
+    moved = replace(motion, position=centre, velocity=motion.velocity + turned, normal=there.normal)
+    return replace(record, motion=moved, contact=place)
 
 
 def _runs_of_a_phase(at: Samples) -> Iterator[tuple[Samples, str]]:
