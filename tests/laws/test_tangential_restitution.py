@@ -7,6 +7,7 @@ seen at the contact, worked out here with NumPy, and to mpmath.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -19,6 +20,8 @@ import trundle as tr
 from trundle.mechanics.algebra import Matrix, Quaternion, Vector
 from trundle.mechanics.contact import contact_at
 from trundle.mechanics.impact import Impact, _Course, land
+from trundle.solve import transitions
+from trundle.solve.contact_state import ContactState
 from trundle.verify.course import Course
 from trundle.verify.landings import Landing
 
@@ -311,3 +314,43 @@ def test_a_tangential_restitution_is_a_share() -> None:
         tr.Support(tr.Plane(), tangential_restitution=1.5)
     with pytest.raises(tr.InvalidValueError, match=r"`tangential_restitution` must not be negative.*-1"):
         tr.Support(tr.Plane(), tangential_restitution=-1)
+
+
+@pytest.mark.parametrize("friction", [None, 2.8])
+def test_rounding_does_not_decide_whether_a_body_that_is_pressed_down_by_its_friction_bounces(
+    friction: float | None,
+) -> None:
+    # What gives the slip back may press an egg onto the floor: it comes off with no speed, and what pulls it decides.
+    pressed = 0
+    for seed in range(130):
+        drawn = np.random.default_rng(seed)
+        egg = tr.Body.ellipsoid(tuple(drawn.uniform(0.05, 0.2, 3)), mass=1.0)
+        shares = {"restitution": drawn.choice([0.0, 0.02, 0.3]), "tangential_restitution": drawn.uniform(0.1, 1.0)}
+        slips = tr.RollingSystem(egg, tr.Support(tr.Plane(), friction=1.0, **shares))
+        turned, speeds, spins = drawn.normal(size=4), drawn.normal(size=3), drawn.normal(size=3)
+        velocity = (3 * speeds[0], 3 * speeds[1], -0.3 * abs(speeds[2]))
+        start = slips.place(
+            orientation=turned / np.linalg.norm(turned), velocity=velocity, angular_velocity=tuple(20 * spins)
+        )
+        system = replace(slips, support=replace(slips.support, friction=friction))
+        outcomes = []
+        for _ in range(6):
+            V, Omega = (tuple(v * (1 + 1e-15 * drawn.normal(size=3))) for v in (start.velocity, start.angular_velocity))
+            outcomes.append(what_follows(system, replace(start, velocity=V, angular_velocity=Omega)))
+        first, *rest = outcomes
+        for kinds, moves in rest:
+            assert kinds == first[0], seed
+            np.testing.assert_allclose(moves, first[1], rtol=0.0, atol=1e-10, err_msg=str(seed))
+        pressed += first[0] == ["land"]
+    assert pressed > 50
+
+
+def what_follows(system: tr.RollingSystem, start: tr.State) -> tuple[list[str], list[float]]:
+    """Return the events of a landing, and V and aΩ after it."""
+    at = ContactState.of(system, start)
+    try:
+        follows = transitions._struck(system, at)
+    except tr.SolverError as error:
+        return [str(error)], []
+    after = follows.law.unpack(system, follows.time, follows.state_vector)
+    return [event.kind for event in follows.events], [*after.V, *(after.Omega * at.arm)]

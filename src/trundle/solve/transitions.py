@@ -353,10 +353,12 @@ def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: Con
         after = at.moving(system, V, Omega, coordinates)
         off = after.approach  # a free axle that was struck carries the contact along
         sideways = at.approach >= -SLIP_TOLERANCE * at.speed
-        if (sideways or system.support.restitution == 0) and off <= SLIP_TOLERANCE * at.speed:
-            off = 0.0  # slip that is given back may throw a body off, rounding does not
+        bare = sideways or system.support.restitution == 0 or system.support.tangential_restitution > 0
+        if bare and off <= SLIP_TOLERANCE * at.speed:
+            off = 0.0  # slip that is given back may throw a body off or hold it down, rounding does not
     pull = _pull(system, after)  # by the motion that it has now: what it came down with is gone
-    bounces = off > 0 and not _is_low(at, off, pull)
+    slips_off = system.support.friction is None and system.support.tangential_restitution > 0 and pull < 0
+    bounces = slips_off if off == 0 else off > 0 and not _is_low(at, off, pull)
     if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
         holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
         return _struck(replace(system, support=holding), at, jolt, before)
