@@ -131,9 +131,10 @@ class Landing:
         back = float(support.tangential_restitution)
         if mu is None and back > 0:  # nothing slips that stays on it, or that would with the slip it is given back
             found = landing(back)
-            given = axes.T @ found.impulse() if self.strikes else np.zeros(3)
+            after = self._struck_by(axes.T @ found.impulse() if self.strikes else np.zeros(3))
             off = min(float(self.goes @ self.n), float(found.slip[2]))
-            if off <= EXACT * self.speed or self._rise(off, self._struck_by(given)) < _CUT:
+            bare = off <= EXACT * self.speed  # it comes off with no speed, or not at all
+            if self._opening(after) <= 0 if bare else self._rise(off, after) < _CUT:
                 back = 0.0
         return landing(back)
 
