@@ -245,6 +245,18 @@ def test_a_hard_landing_makes_no_later_slope_less_sharp(height: float, rate: flo
     assert {"land", "grip", "slip"} <= {event.kind for event in run.events}
 
 
+@pytest.mark.parametrize("angle", [5e-3, 5e-5, 5e-7])
+def test_a_body_that_turns_slowly_and_quivers_is_followed_in_narrow_windows(angle: float) -> None:
+    # Its forces could turn it a thousand times as fast: beside them its Ω, and how it quivers, are nothing.
+    motion = {"kind": "tilt", "angle": f"{angle}*sqrt(1 + 0.3*t)"}
+    support = {"kind": "plane", "friction": 0.0, "motion": motion}
+    body = {"kind": "half-cylinder", "radius": 0.0243, "mass": 0.192}
+    start = {"position": [0.005, -0.13], "velocity": "co-rotating"}
+    run = passes(body=body, support=support, start=start, run={"duration": 2.0, "every": 0.0366})
+    Omega = run.samples.angular_velocity
+    assert 0 < np.ptp(Omega[:, 1]) < 1e-3 * angle / 5e-3
+
+
 def test_a_hemisphere_that_tips_over_its_edge() -> None:
     body = {"kind": "hemisphere", "radius": 0.0189, "mass": 0.1196}
     motion = {"kind": "free-axle", "inertia": 0.003368, "rate": -6.93}
@@ -446,6 +458,28 @@ def test_slip_that_begins_in_a_pipe_while_a_ball_spins_at_900_radians_a_second(s
 
 
 # --- a second run that does not come through ------------------------------------------------------------------
+
+
+def test_what_a_small_change_grows_to_is_known_as_far_as_the_run_itself_comes() -> None:
+    # Begun anew at a sample, a run may end sooner than those from changed starts: a rounding before a singular end.
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 0.2), tr.Support(tr.Paraboloid(0.3)))
+    start = system.place((0.1, 0.0), (0.1, 0.3))
+    run = tr.simulate(system, start, 1.0, 0.1, method="taylor")
+    asked = []
+
+    class Kept(Dense):
+        def __init__(self) -> None: ...
+
+        def like_it(self, start: tr.State, times: Any) -> Any:
+            asked.append(start)
+            found = Method.of("taylor").solve(system, start, times)
+            return found.part(slice(-3)) if len(asked) == 1 else found
+
+    found = growth(system, start, run.samples, Method.of("taylor"), sizes_of(system, run.samples), Kept())
+    assert len(asked) > 5
+    assert found.magnified.shape == found.times.shape
+    assert (found.magnified > 0).any()
+    assert not ((found.times > 0.75) & (found.times < 0.95)).any()
 
 
 def test_a_second_run_that_breaks_down_fails_the_card_and_raises_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure, checked
 from .events import instants_of
-from .law import Residuals, narrowed, residuals, roughness, slope_sizes
+from .law import Residuals, narrowed, residuals, roughness, window_sizes
 from .stretches import SmoothSegment, stretches
 
 _RUN_AGAIN = 2000  # samples
@@ -104,7 +104,7 @@ class Again:
         first = best = self._first_windows
         found = self._solve(first)
         looked_at = _at(found, first.ravel())
-        sizes = slope_sizes(self.system, looked_at, first)
+        sizes = window_sizes(self.system, looked_at, first, self.bound)
         windows, least = first.copy(), roughness(looked_at, first, sizes)
         rest = least.copy()
         for _ in range(_NARROWINGS):

@@ -71,12 +71,17 @@ def _rates(windows: Samples) -> tuple[Array, Array, Array]:
     return windows.velocity, windows.angular_velocity, windows.support_coordinates[:, -1:]
 
 
-def slope_sizes(system: RollingSystem, windows: Samples, times: Array) -> tuple[Array, ...]:
-    """Return against what a slope of each of these is small or not in each window, m/s² and rad/s².
+def window_sizes(system: RollingSystem, windows: Samples, times: Array, bound: float) -> tuple[Array, ...]:
+    """Return against what V and Ω are small or not in each window, m/s and rad/s, and the slope of each of `_rates`.
 
-    Each has its own: a landing elsewhere in the run makes no slope here less sharp.
+    Each has its own: a landing elsewhere in the run makes nothing here less sharp. A body may turn so slowly that its Ω
+    says nothing beside what its forces could do to it, and its orientation still must be followed.
     """
     at = windows.part(np.arange(_HALF_NODES, times.size, times.shape[1]))
+    sharp = _ROUNDING / bound / (0.5 * (times[:, -1] - times[:, 0]))  # 1/s: what rounding makes of a slope
+    passing = _lengths(_slope_at_middle(times, windows.contact.reshape(*times.shape, 3)))
+    places = _lengths(at.position) + _lengths(at.contact)
+    speeds = [np.maximum(_lengths(at.velocity), passing) + sharp * places, _lengths(at.angular_velocity) + sharp]
     F, _, J, _ = acting(system, at)
     turning = _lengths(at.angular_velocity)
     own = [
@@ -86,20 +91,24 @@ def slope_sizes(system: RollingSystem, windows: Samples, times: Array) -> tuple[
     ]
     own[0] = np.maximum(own[0], _lengths(F) / float(system.body.mass))
     own[1] += own[0] * _lengths(at.contact - at.position) * float(system.body.mass) / np.trace(J, axis1=1, axis2=2)
-    return tuple(own)
+    return (*speeds, *own)
 
 
 def roughness(windows: Samples, times: Array, sizes: tuple[Array, ...]) -> Array:
-    """Return what the last Chebyshev coefficients of V, Ω and an axle's rate in each window are to their slopes."""
+    """Return what the last Chebyshev coefficients of V, Ω and an axle's rate in each window are to their slopes.
+
+    Of V and Ω, which are slopes themselves, also what they are to them.
+    """
     nodes = times.shape[1]
     weights = np.ones(nodes)
     weights[[0, -1]] = 0.5
     last = np.cos(np.pi * np.outer([nodes - 2, nodes - 1], np.arange(nodes)) / (nodes - 1)) * weights / (nodes - 1)
     half = (times[:, -1] - times[:, 0]) / 2
     found = np.zeros(len(times))
-    for values, slope in zip(_rates(windows), sizes, strict=False):
+    speeds, slopes = (*sizes[:2], np.full(len(times), np.inf)), sizes[2:]
+    for values, speed, slope in zip(_rates(windows), speeds, slopes, strict=False):
         tails = np.abs(np.einsum("kn,wnc->wkc", last, values.reshape(*times.shape, -1))).max(axis=(1, 2))
-        found = np.maximum(found, tails * nodes / half / np.maximum(slope, 1e-300))
+        found = np.maximum(found, tails / np.maximum(np.minimum(speed, slope * half / nodes), 1e-300))
     wide = times[:, -1] - times[:, 0] > 4 * _NARROWEST * np.abs(times).max()
     return np.where(wide, found, 0.0)
 
