@@ -142,3 +142,19 @@ def test_slip_that_turns_by_its_size_and_by_its_components(seed: int, friction: 
     found = _Course(rows, friction, restitution, 0.5, Vector(*slip.tolist())).impulse().array()
     wanted = Course(M, friction, restitution, slip, 0.5).impulse()
     assert np.abs(found - wanted).max() <= EXACT(256, np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("friction", [3.0, 0.3, 0.03])
+def test_a_body_that_is_easy_to_turn_keeps_no_speed_off_the_support(friction: float) -> None:
+    # Light impulses turn it fast: what an impulse errs by must not be told by the momentum of the whole body.
+    for seed in range(40):
+        drawn = np.random.default_rng(seed)
+        moments = tuple(3e-5 * drawn.uniform(1.0, 1.7, 3))
+        body = tr.Body(1.3, tr.Principal(*moments), tr.Ellipsoid(0.013, 0.19, 0.12))
+        system = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=friction))
+        q = Quaternion(*(turn := drawn.normal(size=4)) / np.linalg.norm(turn))
+        contact, s = contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), q), Vector(*drawn.normal(size=2), -1.0)
+        struck = land(system, contact, q, s)
+        turned = struck.angular_velocity_change.cross(contact.offset)
+        after = (s + struck.velocity_change + turned).z
+        assert 1.3 * abs(after) <= 1e-12 * struck.impulse.norm(), seed

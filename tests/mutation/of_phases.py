@@ -46,6 +46,13 @@ PHASES = (
         'found = {"lift": N + floor - 0.01 * system.body.mass * system.gravity}',
         "ball_off_dome",
     ),
+    Mutant(
+        "lift where N only touches zero",
+        FOLLOWING,
+        "_touching(system, at) if _stays(system, law, at, stop) else _lifted(system, at)",
+        "_lifted(system, at)",
+        "ball_turns_back_in_pipe",
+    ),
     Mutant("lift missed", f"{LAWS}.friction", LIFT, 'found = {"lift": 1.0 + 0.0 * N}', "ball_off_dome"),
     Mutant(
         "lift from slipping 1 % late",

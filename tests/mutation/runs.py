@@ -47,6 +47,13 @@ def egg_slips_off_dome() -> Trajectory:
     return _run(system, start, 0.4)
 
 
+def ball_turns_back_in_pipe() -> Trajectory:
+    """A ball is dragged to and fro round an upright pipe that rocks about its axis: N is 0 where it turns back."""
+    pipe = tr.Support(tr.Cylinder(0.25), motion=tr.Rock(0.7, 3.0, axis=(0.0, 0.0, 1.0)))
+    system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), pipe)
+    return _run(system, system.place((0.0, 0.0), (0.15, 0.0)), 1.5)
+
+
 def egg_bounces() -> Trajectory:
     """The same is thrown down, and its slip turns at each landing."""
     system = tr.RollingSystem(*_egg(surface=tr.Plane(), motion=tr.Spin(3.0), friction=0.3, restitution=0.6))

@@ -21,6 +21,7 @@ from .card import CardFigure, checked
 
 _WORTH_TELLING = 1e-3  # of its bound
 _ROUNDING = 1e-15  # of a place: a few roundings
+_LASTING = 0.1  # rad, or of a body's size: what comes off is a ten-thousandth of it away by then
 _STEP = 1e-6  # of a length, for the slope of the level function
 
 
@@ -131,10 +132,24 @@ class EachSample:
             Shares("the contact is on the surface", np.abs(height) / size, self.bound),
             Shares("and nearest to the body", aside / size, self.bound),
             Shares("the gap", np.where(self.flies, -gap, np.abs(gap)) / size, self.bound),
+            Shares("a flight leaves it", self._staying(gap), EXACT),
             *self._ends(size),
         ]
         over = f"; in flight the gap is {gap[self.flies].max():.3g} m at most" if self.flies.any() else ""
         return worst_of("touches the support", conditions, self.at.time, f"gap, share of the size{over}")
+
+    def _staying(self, gap: Array) -> Array:
+        """Return 1 in flights that never leave the support, although they last: the body was let go for nothing."""
+        at, found = self.at, np.zeros(gap.size)
+        arms, speeds = np.linalg.norm(at.contact - at.position, axis=1), np.linalg.norm(at.velocity, axis=1)
+        noise = _ROUNDING * (largest(at.contact) + largest(at.position))
+        for part in np.split(np.arange(gap.size), np.searchsorted(at.time, [event.time for event in at.events])):
+            if part.size < 2 or not self.flies[part].all():
+                continue
+            arm, spins = arms[part].max(), np.linalg.norm(at.angular_velocity[part], axis=1).max()
+            lasts = np.ptp(at.time[part]) * (spins + speeds[part].max() / arm) > _LASTING
+            found[part] = float(lasts and gap[part].max() <= EXACT * arm + noise)
+        return found
 
     def _aside(self, apart: Array, gap: Array) -> Array:
         """Return how far the two points are beside each other, m; in flight no more than how far p is beside its place.
