@@ -257,6 +257,23 @@ def test_a_body_that_turns_slowly_and_quivers_is_followed_in_narrow_windows(angl
     assert 0 < np.ptp(Omega[:, 1]) < 1e-3 * angle / 5e-3
 
 
+@pytest.mark.parametrize("amplitude", [0.644, -0.644])
+def test_a_body_whose_resistance_turns_round_slips_before_friction_has_given_all(amplitude: float) -> None:
+    # Where it stops turning over the support its resistance jumps from −δN to δN, and so does what asks for friction.
+    rocks = {"kind": "rock", "amplitude": amplitude, "rate": 1.32, "phase": -0.08}
+    way = -1 if amplitude > 0 else 1
+    run = passes(
+        body={"kind": "weighted-cylinder", "radius": 0.0329, "mass": 1.265, "weight": 0.0356, "distance": 0.014},
+        support={"kind": "plane", "rim": 0.106, "friction": 0.0642, "motion": rocks},
+        loads=[{"kind": "rolling-resistance", "offset": 0.001}],
+        start={"position": [-0.013 * way, 0.0], "velocity": [0.097 * way, 0.0]},
+        run={"duration": 0.6, "every": 0.02},
+    )
+    stop, slip = (event for event in run.events if event.kind in ("stop", "slip"))
+    assert (stop.kind, slip.kind) == ("stop", "slip")
+    assert stop.time == slip.time
+
+
 def test_a_hemisphere_that_tips_over_its_edge() -> None:
     body = {"kind": "hemisphere", "radius": 0.0189, "mass": 0.1196}
     motion = {"kind": "free-axle", "inertia": 0.003368, "rate": -6.93}

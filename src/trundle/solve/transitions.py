@@ -195,6 +195,8 @@ def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
     """Return the kinds of the events between two phases that a stop has parted, and what is said of them."""
     if stop == "start" and after == RollingLaw.code:
         return (_BEGAN_TO_ROLL,)
+    if stop == "stop" and (before, after) == (RollingLaw.code, SlippingLaw.code):  # the resistance jumps, and friction
+        return _NAMES[RestingLaw.code], _NAMES[after]
     if before != after:
         return (_NAMES[after],)
     # Only turning that ends lets rolling follow rolling: what drives the body overcomes the resistance at once.

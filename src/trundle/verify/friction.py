@@ -118,9 +118,16 @@ def slip_of(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
 
 
 def _directed(system: RollingSystem, at: Samples) -> NDArray[np.bool_]:
-    """Tell where a body that slips has a direction to slip in: at the very grip, the force is that of a rounding."""
+    """Tell where a force that is along a motion has a direction: at the very grip, or stop, it is that of a rounding."""
     s, at_contact = slip_of(system, at)
-    return (at.phase != SLIPPING) | (np.linalg.norm(s, axis=1) > _ROUNDING * at_contact)
+    slips = (at.phase != SLIPPING) | (np.linalg.norm(s, axis=1) > _ROUNDING * at_contact)
+    if not system.resisted:
+        return slips
+    omega = np.broadcast_to(at.support(system).angular_velocity.array(), at.position.shape)
+    over, n = at.angular_velocity - omega, at.normals(system)
+    turning = np.linalg.norm(over - (over * n).sum(axis=1, keepdims=True) * n, axis=1)
+    rates = np.linalg.norm(at.angular_velocity, axis=1) + np.linalg.norm(omega, axis=1)
+    return slips & ((at.phase != ROLLING) | (turning > _ROUNDING * rates))
 
 
 def _at(samples: Samples, values: Array, index: int) -> tuple[float, float]:
