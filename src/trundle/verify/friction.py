@@ -118,7 +118,7 @@ def slip_of(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
 
 
 def _directed(system: RollingSystem, at: Samples) -> NDArray[np.bool_]:
-    """Tell where a force that is along a motion has a direction: at the very grip, or stop, it is that of a rounding."""
+    """Tell where a force along a motion has a direction: at the very grip, or stop, it is that of a rounding."""
     s, at_contact = slip_of(system, at)
     slips = (at.phase != SLIPPING) | (np.linalg.norm(s, axis=1) > _ROUNDING * at_contact)
     if not system.resisted:
