@@ -63,16 +63,6 @@ def only_touches(
     """Tell whether N, which has come to zero, rises again at once: the support has pulled by no more than rounding.
 
     A ball that turns back on its way round an upright pipe is pressed on by m v²/(R − r), a square, before and after.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> from trundle.solve.laws import RollingLaw
-    >>> shaken = tr.Support(tr.Plane(), motion=tr.Shake((0.0, 0.0, 0.01), 45.0), friction=0.3)
-    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 1.0), shaken)
-    >>> law, state = RollingLaw(), system.place(time=0.011234198)  # N = 0 at asin(g/(Aω²))/ω, and falls
-    >>> only_touches(system, law, ContactState.of(system, state), law.pack(system, state), ())
-    False
     """
     look, moment = _looks(system, law, at, numbers, ("lift",), event_parameters)
     least = -_ROUNDING * at.forces(system)

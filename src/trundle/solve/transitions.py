@@ -359,9 +359,10 @@ def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: Con
         if bare and off <= SLIP_TOLERANCE * at.speed:
             off = 0.0  # slip that is given back may throw a body off or hold it down, rounding does not
     pull = _pull(system, after)  # by the motion that it has now: what it came down with is gone
-    slips_off = system.support.friction is None and system.support.tangential_restitution > 0 and pull < 0
+    gives_back = system.support.friction is None and system.support.tangential_restitution > 0
+    slips_off = gives_back and -pull * at.arm > _FLOOR * at.speed**2
     bounces = slips_off if off == 0 else off > 0 and not _is_low(at, off, pull)
-    if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
+    if not bounces and gives_back:
         holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
         return _struck(replace(system, support=holding), at, jolt, before)
     said = jolt or f"landed at {-at.approach:.4g} m/s"

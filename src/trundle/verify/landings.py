@@ -134,7 +134,8 @@ class Landing:
             after = self._struck_by(axes.T @ found.impulse() if self.strikes else np.zeros(3))
             off = min(float(self.goes @ self.n), float(found.slip[2]))
             bare = off <= EXACT * self.speed  # it comes off with no speed, or not at all
-            if self._opening(after) <= 0 if bare else self._rise(off, after) < _CUT:
+            pulled_off = self._opening(after) * float(np.linalg.norm(self.rho)) > EXACT * self.speed**2
+            if not pulled_off if bare else self._rise(off, after) < _CUT:
                 back = 0.0
         return landing(back)
 
