@@ -20,6 +20,7 @@ from trundle.verify.bounds import sizes_of
 from trundle.verify.compared import Compared
 from trundle.verify.growth import growth
 from trundle.verify.law import _SLOPE, _slope_at_middle, residuals, window_times
+from trundle.views.scene.headline import _events
 
 pytest.importorskip("heyoka")
 
@@ -272,6 +273,8 @@ def test_a_body_whose_resistance_turns_round_slips_before_friction_has_given_all
     stop, slip = (event for event in run.events if event.kind in ("stop", "slip"))
     assert (stop.kind, slip.kind) == ("stop", "slip")
     assert stop.time == slip.time
+    (told,) = (one.text for one in _events(run.system, run.samples))
+    assert told == "begins to slip after {}"  # it does not come to rest
 
 
 def test_a_hemisphere_that_tips_over_its_edge() -> None:

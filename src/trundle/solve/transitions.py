@@ -196,7 +196,7 @@ def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
     if stop == "start" and after == RollingLaw.code:
         return (_BEGAN_TO_ROLL,)
     if stop == "stop" and (before, after) == (RollingLaw.code, SlippingLaw.code):  # the resistance jumps, and friction
-        return _NAMES[RestingLaw.code], _NAMES[after]
+        return ("stop", "stopped turning over the support"), _NAMES[after]
     if before != after:
         return (_NAMES[after],)
     # Only turning that ends lets rolling follow rolling: what drives the body overcomes the resistance at once.

@@ -63,11 +63,16 @@ def unturning(system: RollingSystem, at: Samples) -> Any:
     """Tell in which samples resistance to rolling keeps a body that slips or rests from turning over the support."""
     if not system.resisted or (at.phase == FLIGHT).all():
         return np.zeros(at.time.size, dtype=bool)
+    over, size = turning_over(system, at)
+    return (at.phase == RESTING) | ((at.phase == SLIPPING) & (over <= _ROUNDING * size))
+
+
+def turning_over(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
+    """Return how fast a body turns over the support, rad/s, and the two rates that it is the small difference of."""
     omega = np.broadcast_to(at.support(system).angular_velocity.array(), at.angular_velocity.shape)
     relative, n = at.angular_velocity - omega, at.normals(system)
     over = np.linalg.norm(relative - (relative * n).sum(axis=1, keepdims=True) * n, axis=1)
-    size = np.linalg.norm(at.angular_velocity, axis=1) + np.linalg.norm(omega, axis=1)
-    return (at.phase == RESTING) | ((at.phase == SLIPPING) & (over <= _ROUNDING * size))
+    return over, np.linalg.norm(at.angular_velocity, axis=1) + np.linalg.norm(omega, axis=1)
 
 
 def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:

@@ -13,7 +13,7 @@ from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.contact_state import WEIGHTLESS
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
-from .acting import acting, cross
+from .acting import acting, cross, turning_over
 from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
 from .each_sample import Shares, worst_of
@@ -123,10 +123,7 @@ def _directed(system: RollingSystem, at: Samples) -> NDArray[np.bool_]:
     slips = (at.phase != SLIPPING) | (np.linalg.norm(s, axis=1) > _ROUNDING * at_contact)
     if not system.resisted:
         return slips
-    omega = np.broadcast_to(at.support(system).angular_velocity.array(), at.position.shape)
-    over, n = at.angular_velocity - omega, at.normals(system)
-    turning = np.linalg.norm(over - (over * n).sum(axis=1, keepdims=True) * n, axis=1)
-    rates = np.linalg.norm(at.angular_velocity, axis=1) + np.linalg.norm(omega, axis=1)
+    turning, rates = turning_over(system, at)
     return slips & ((at.phase != ROLLING) | (turning > _ROUNDING * rates))
 
 

@@ -14,6 +14,7 @@ velocities ([routh1905]; [borisov2002] for the turning surface).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -252,13 +253,14 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     n, Omega = system.support.surface.normal(at.contact), at.motion.angular_velocity
     parts = [r.x * V.y, -(r.y * V.x), *(a * x * y for x, y in zip(Omega, n, strict=True))]
     shape = np.broadcast_shapes(*(np.shape(part) for part in (*parts, at.contact.x, at.contact.z)))
-    flat = [np.broadcast_to(np.asarray(part, dtype=float), shape).reshape(-1) for part in parts]
-    contact = [np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in at.contact]
-    distance = np.hypot(contact[0], contact[1])
-    centre = np.hypot(*(np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in (r.x, r.y)))
+
+    def flat(parts: Iterable[Any]) -> list[Any]:
+        return [np.broadcast_to(np.asarray(part, dtype=float), shape).reshape(-1) for part in parts]
+
+    contact, moved, carried = flat(at.contact), flat(V), flat(parts)
+    distance, centre = np.hypot(contact[0], contact[1]), np.hypot(*flat((r.x, r.y)))
     if centre.min() <= max(_NEAREST * centre.max(), _ON_AXIS * a):
         return []
-    moved = [np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in V]
     outwards = (contact[0] * moved[0] + contact[1] * moved[1]) / np.maximum(distance, 1e-300)
     times = np.asarray(at.motion.time, dtype=float).reshape(-1)
     meridian = _Meridian(system, distance, contact[2], centre, _Pace(times, outwards, moved[2]))
@@ -269,7 +271,7 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
         return []
     A, B, C, D, *turned = rows[2:]
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
-    columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
+    columns = [inverse[:, 0] * part for part in carried[:2]] + [inverse[:, 1] * part for part in carried[2:]]
     columns += [-inverse[:, 0] * turned[0], -inverse[:, 1] * turned[1]]
     first = np.array([[A[0], B[0]], [C[0], D[0]]])
     columns = [first @ column for column in columns]

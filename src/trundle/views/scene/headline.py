@@ -255,13 +255,16 @@ _TOLD: dict[str, tuple[str, Quantity]] = {
 
 
 def _events(system: RollingSystem, at: Samples) -> Iterator[Headline]:
-    """Tell of the first event of a kind that has words."""
-    for event in at.events:
-        if event.kind in _TOLD:
+    """Tell of the first event of a kind that has words: not of a stop that lasts for no time."""
+    for event, behind in zip(at.events, (*at.events[1:], None), strict=True):
+        passes = event.kind == "stop" and behind is not None and behind.time == event.time
+        if event.kind in _TOLD and not passes:
             text, quantity = _TOLD[event.kind]
             how = "by the event; and by the samples before it, drawn on"
             since = event.time - float(at.time[0])
-            yield Headline(text, "s", since, _drawn_on(system, at, event, quantity), False, how)
+            jumps = any(other.kind == "stop" and other.time == event.time for other in at.events if other is not event)
+            drawn = None if jumps else _drawn_on(system, at, event, quantity)
+            yield Headline(text, "s", since, drawn, False, how)
             return
 
 
