@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -256,7 +257,7 @@ _TOLD: dict[str, tuple[str, Quantity]] = {
 
 def _events(system: RollingSystem, at: Samples) -> Iterator[Headline]:
     """Tell of the first event of a kind that has words: not of a stop that lasts for no time."""
-    for event, behind in zip(at.events, (*at.events[1:], None), strict=True):
+    for event, behind in zip_longest(at.events, at.events[1:]):
         passes = event.kind == "stop" and behind is not None and behind.time == event.time
         if event.kind in _TOLD and not passes:
             text, quantity = _TOLD[event.kind]
