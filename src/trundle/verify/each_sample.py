@@ -13,15 +13,16 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, contact_at
+from ..mechanics.contact import Contact, contact_at, roll
 from ..mechanics.system import RollingSystem
-from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from .bounds import EXACT, Array, largest, speed_of
 from .card import CardFigure, checked
 
 _WORTH_TELLING = 1e-3  # of its bound
 _ROUNDING = 1e-15  # of a place: a few roundings
 _LASTING = 0.1  # rad, or of a body's size: what comes off is a ten-thousandth of it away by then
+_PULLS = 1e-9  # share of the force: more than rounding
 _STEP = 1e-6  # of a length, for the slope of the level function
 
 
@@ -139,17 +140,31 @@ class EachSample:
         return worst_of("touches the support", conditions, self.at.time, f"gap, share of the size{over}")
 
     def _staying(self, gap: Array) -> Array:
-        """Return 1 in flights that never leave the support, although they last: the body was let go for nothing."""
+        """Return 1 in flights that never leave the support, although they last: the body was let go for nothing.
+
+        Where a wall would have had to pull, a body may fall along it.
+        """
         at, found = self.at, np.zeros(gap.size)
         arms, speeds = np.linalg.norm(at.contact - at.position, axis=1), np.linalg.norm(at.velocity, axis=1)
         noise = _ROUNDING * (largest(at.contact) + largest(at.position))
-        for part in np.split(np.arange(gap.size), np.searchsorted(at.time, [event.time for event in at.events])):
-            if part.size < 2 or not self.flies[part].all():
+        parts = np.split(np.arange(gap.size), np.searchsorted(at.time, [event.time for event in at.events]))
+        for part, since in zip(parts, (None, *at.events), strict=True):
+            if part.size < 2 or not self.flies[part].all() or (since is not None and self._would_pull(since)):
                 continue
             arm, spins = arms[part].max(), np.linalg.norm(at.angular_velocity[part], axis=1).max()
             lasts = np.ptp(at.time[part]) * (spins + speeds[part].max() / arm) > _LASTING
             found[part] = float(lasts and gap[part].max() <= EXACT * arm + noise)
         return found
+
+    def _would_pull(self, since: Event) -> bool:
+        """Tell whether the support would have to pull a body that rolled on from an event."""
+        if since.after is None or since.contact is None:
+            return False
+        state = since.after
+        p, q, Omega = Vector(*since.contact), Quaternion(*state.orientation), Vector(*state.angular_velocity)
+        rolling = roll(self.system, state.time, p, q, Omega, state.support)
+        N, force = rolling.reaction.dot(rolling.contact.normal), rolling.reaction.norm()
+        return float(N) < -_PULLS * float(force)
 
     def _aside(self, apart: Array, gap: Array) -> Array:
         """Return how far the two points are beside each other, m; in flight no more than how far p is beside its place.
