@@ -352,13 +352,16 @@ THROUGH_PHASES: dict[str, tuple[tr.RollingSystem, list[dict[str, Any]]]] = {
 }
 
 
-@pytest.mark.parametrize("name", THROUGH_PHASES)
-def test_members_in_any_phase_go_in_company(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("name", "unrolled"),
+    [*((name, False) for name in THROUGH_PHASES), *((name, True) for name in [*THROUGH_PHASES][:3])],
+)
+def test_members_in_any_phase_go_in_company(name: str, unrolled: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody is run alone, and each comes through the events of its own run, at their instants."""
     system, placed = THROUGH_PHASES[name]
     starts = [system.place(**one) for one in placed]
     monkeypatch.setattr(many.Runs, "put_alone", None)
-    result = many.run_members([system] * len(starts), starts, 0.6, 0.02)
+    result = many.run_members([system] * len(starts), starts, 0.6, 0.02, unrolled=unrolled)
     for i, start in enumerate(starts):
         alone = tr.simulate(system, start, 0.6, 0.02, method="taylor")
         assert [kind for kind, _ in result.happened[i]] == [event.kind for event in alone.events]

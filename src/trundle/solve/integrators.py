@@ -46,12 +46,23 @@ def _copied(lowered: Lowered, key: str, tolerance: float, level: int) -> Any:
 @contextlib.contextmanager
 def borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterator[Any]:
     """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond."""
-    idle = _memory().idle.setdefault((key, level), [])
-    integrator = idle.pop() if idle else _copied(lowered, key, tolerance, level)
+    name = f"{key}-{level}"
+    integrator = idle(name) or _copied(lowered, key, tolerance, level)
     if lowered.event_functions:
         integrator.reset_cooldowns()  # a stop just passed is not looked for again at once
     yield integrator
-    idle.append(integrator)  # not where it broke down
+    put_back(name, integrator)  # not where it broke down
+
+
+def idle(name: str) -> Any | None:
+    """Return a copy that was put back under a name, if there is one."""
+    waiting = _memory().idle.get(name)
+    return waiting.pop() if waiting else None
+
+
+def put_back(name: str, integrator: Any) -> None:
+    """Keep a copy that is no longer in use for whoever asks for the next."""
+    _memory().idle.setdefault(name, []).append(integrator)
 
 
 def ready(
@@ -102,7 +113,7 @@ class _Memory:
 
     def __init__(self) -> None:
         self.known: dict[str, Any] = {}
-        self.idle: dict[tuple[str, int], list[Any]] = {}  # copies between two uses
+        self.idle: dict[str, list[Any]] = {}  # copies between two uses
         self.ready: dict[Any, list[tuple[Lowered, str]]] = {}
 
 

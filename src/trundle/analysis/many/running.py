@@ -125,10 +125,12 @@ def run_members(
     workers: int | None = 1,
     progress: Progress | None = None,
     where: Any = None,
+    unrolled: bool = False,
 ) -> Runs:
     """Run as many systems as starts, of one structure and at one time, and return their arrays.
 
-    By "auto" and "taylor" they go as `simulate_many` says; by any other method of `simulate` each goes alone.
+    By "auto" and "taylor" they go as `simulate_many` says; by any other method of `simulate` each goes alone. Unrolled
+    loops are worth their compilation where thousands follow.
     """
     times = starts[0].time + sample_times(duration, every)
     result = Runs(systems[0], len(systems), times, progress)
@@ -136,7 +138,7 @@ def run_members(
     if method in ("auto", "taylor"):
         method = "taylor" if systems[0].support.surface.analytic else "runge-kutta"
         if _batched(systems[0]) and (where is not None or taylor.available()):
-            rest = _together(result, systems, starts, times, workers, where)
+            rest = _together(result, systems, starts, times, workers, where, unrolled)
     for member in rest:
         result.put_alone(member, systems[member], starts[member], duration, every, method)
     return result
@@ -274,6 +276,7 @@ def _together(
     times: Any,
     workers: int | None,
     device: Any,
+    unrolled: bool,
 ) -> list[int]:
     """Run many members at a time, on a device or by heyoka, and return those that are left."""
     from ...solve import ensemble
@@ -304,7 +307,7 @@ def _together(
     if not begins:
         return sorted(left)
     count = min(workers or ensemble.cores(), -(-len(begins) // ensemble.LANES))
-    _, events = ensemble.integrate(systems, begins, times, result.put, workers=count)
+    _, events = ensemble.integrate(systems, begins, times, result.put, workers=count, unrolled=unrolled)
     result.put_events(events)
     return sorted(left.difference(events))
 

@@ -28,6 +28,9 @@ Array = NDArray[np.float64]
 Columns = dict[str, Any]  # one array for each variable, a row for each member
 
 
+_LARGEST = 128  # members of a block
+
+
 def block_of(members: int) -> int:
     """Return how many members go together in a sweep of so many.
 
@@ -39,7 +42,7 @@ def block_of(members: int) -> int:
     >>> block_of(100), block_of(100_000)
     (8, 128)
     """
-    return next(block for least, block in ((4096, 128), (512, 32), (0, 8)) if members >= least)
+    return next(block for least, block in ((4096, _LARGEST), (512, 32), (0, 8)) if members >= least)
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,8 @@ class Job:
     def _fill(self, columns: Columns, group: list[int], systems: list[RollingSystem], starts: list[State]) -> None:
         """Run members of one structure, and put down what is measured of them."""
         timing = self.document.timing
-        runs = run_members(systems, starts, float(timing.duration), float(timing.every), method=timing.method)
+        span, many = (float(timing.duration), float(timing.every)), self.block == _LARGEST
+        runs = run_members(systems, starts, *span, method=timing.method, unrolled=many)
         sampled = Sampled(systems, runs, starts)
         for measure in self.measures:
             columns[measure.name][group] = measure.of(sampled)
