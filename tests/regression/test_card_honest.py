@@ -870,3 +870,20 @@ def test_friction_of_slip_that_is_all_but_over_is_as_sharp_as_the_slip(
     times = np.array([run.start.time, *(time + aside for time in events)])
     card = run.at(times[times <= run.data.time.values[-1]]).card()
     assert card.passed, str(card)
+
+
+# --- a power that jumps -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("flies", "at"),
+    [(flies, at) for flies, count in ((True, 25), (False, 6)) for at in np.linspace(0.30, 0.3417, count)],
+)
+def test_energy_is_balanced_wherever_in_a_panel_a_force_turns_round(flies: bool, at: float) -> None:
+    """Between a panel's end and the quadrature's nearest node, too: 0.3017 s and 0.34 s for one that flies."""
+    uneven = tr.Potential("2*t**2 + 3*abs(x)")  # it depends on the time: its work is summed up
+    ball = tr.RollingSystem(tr.Body.solid_sphere(0.05, 1.0), tr.Support(tr.Plane()), loads=(uneven,))
+    start = ball.place(position=(-at, 0.0), velocity=(1.0, 0.0), height=6.0 if flies else 0.0)
+    balance = tr.simulate(ball, start, 1.0, 0.01).card()["energy balance"]
+    assert balance.passed, str(balance)
+    assert balance.bound < 1e-11

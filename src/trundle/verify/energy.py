@@ -23,6 +23,7 @@ _PARTS = 4  # into which a panel is cut where its power is rough
 _TAIL = 1e-2  # share of what may be left over that the quadrature may leave
 _ROUNDING = 1e-14  # of a power, that no cutting makes smaller
 _STIRRED = 1e-9  # share of the speeds at the contact, of which a body's own may be the small difference
+_FEW, _LONGER = 64, 2.5  # panels that are rough, by jumps: they are cut for so many times as many passes
 _MOST_ROUGH = 5000  # panels: so many at once are rough from rounding, which no cut makes less
 
 
@@ -108,16 +109,21 @@ class _Account:
     @staticmethod
     def of(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> _Account:
         x, w = np.polynomial.legendre.leggauss(_NODES)
-        tops = np.polynomial.legendre.legvander(x, _NODES - 1)[:, -2:] * w[:, None] * (_NODES - 1)
+        terms = np.polynomial.legendre.legvander(x, _NODES - 1) * w[:, None] * (np.arange(_NODES) + 0.5)
+        tops = terms[:, -2:]  # the last coefficients of each panel's polynomial
+        to_ends = terms @ np.polynomial.legendre.legvander(np.array([-1.0, 1.0]), _NODES - 1).T
         half = 0.5 * np.diff(panels)
         times = np.hstack([panels[:, :1], panels[:, :1] + half * (1 + x), panels[:, 1:]])
         order = np.argsort(times, axis=None, kind="stable")
         there = follow(times.ravel()[order]).part(np.argsort(order))
         parts = _energies(system, there)
         E = parts.sum(axis=0).reshape(times.shape)
-        *values, size = powers(system, there).reshape(4, *times.shape)[:, :, 1:-1]
-        tails = np.abs(np.array(values) @ tops).max(axis=(0, 2)) * half[:, 0]
-        works = (np.array(values) @ w) * half[:, 0]
+        each = powers(system, there).reshape(4, *times.shape)
+        values, size = each[:3, :, 1:-1], each[3, :, 1:-1]
+        # A power that jumps between an end and the node that is nearest to it shows at the end alone.
+        beyond = np.abs(values @ to_ends - each[:3][:, :, [0, -1]]) * (1 - x[-1])
+        tails = np.maximum(np.abs(values @ tops), beyond).max(axis=(0, 2)) * half[:, 0]
+        works = (values @ w) * half[:, 0]
         ends = there.part(np.arange(times.size).reshape(times.shape)[:, [0, -1]].ravel())
         moved = float(system.body.mass) * largest(ends.velocity) * largest(ends.angular_velocity)
         blur = moved * blur_of(system, ends)
@@ -140,12 +146,14 @@ def balance(
     most = max(abs(first), abs(last), abs(struck), (_STIRRED * speed_of(system, ends)) ** 2 * float(system.body.mass))
     allowed = np.full(len(panels), 1.0 / len(panels))  # each panel's share of what may be left over
     unknown, blur = 0.0, 0.0
-    for passes_left in reversed(range(passes)):
+    longest = int(_LONGER * passes)
+    for done in range(1, longest + 1):
         found = _Account.of(system, panels, follow)
         most, blur = max(most, found.most), max(blur, found.blur)
         limit = _TAIL * bound * max(most, size + float(found.sizes.sum()), 1e-300)
         rough = found.tails > np.maximum(allowed * limit, _ROUNDING * found.sizes)
-        if not passes_left or rough.sum() > _MOST_ROUGH:
+        most_now = _FEW if done >= passes else _MOST_ROUGH
+        if done == longest or rough.sum() > most_now:
             unknown, rough = float(found.tails[rough].sum()), np.zeros_like(rough)
         left += float((found.gained - found.works.sum(axis=0))[~rough].sum())
         total, size = total + found.works[:, ~rough].sum(axis=1), size + float(found.sizes[~rough].sum())
