@@ -24,7 +24,10 @@ from trundle.lab.errors import refusal_of
 from trundle.lab.measuring import track_told
 from trundle.lab.parts import all_parts
 from trundle.mechanics.shapes.base import Shape
+from trundle.mechanics.surfaces.base import Surface
 from trundle.scenario import files
+from trundle.solve import transitions
+from trundle.solve.phases import ENDS
 from trundle.tracks.film.result import _PARTS
 from trundle.views.scene import scene_of
 
@@ -164,6 +167,30 @@ def _said(header: dict[str, Any]) -> list[str]:
 def test_what_is_said_of_a_run(name: str) -> None:
     header = scene_of(tr.Scenario.load(name).run(), samples=50, with_card=True).header
     assert untold([*_said(header), header["support"]["name"]]) == []
+
+
+def test_what_is_said_of_any_event() -> None:
+    """Those that no run above comes to, too."""
+    tree = ast.parse(inspect.getsource(transitions))
+    functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    jolts = _named(functions["_jolted"])["said"]
+    away = [f"the support jerked away from the body at 3 m/s{cut}" for cut in ("", *_cuts(functions["_left_behind"]))]
+    jolts += ["the support struck the body at 3 m/s", *away]
+    struck = [f"landed at 3 m/s{how}" for how in (" and bounced", *_named(functions["_struck"])["cut"])]
+    thrown = [f"{jolt}{how}" for jolt in jolts for how in (" and threw it off", *_named(functions["_struck"])["cut"])]
+    plain = [*transitions._NAMES.values(), transitions._STOPPED_TURNING, transitions._BEGAN_TO_ROLL]
+    ends = [
+        said.format(rim=0.4, end=surface.domain_end, left=shape.validity_end)  # type: ignore[attr-defined]
+        for said, surface, shape in product(ENDS.values(), _kinds(Surface), (Shape, *_kinds(Shape)))
+    ]
+    others = [*(text for _, text in plain), *transitions._SLIPS_ON.values()]
+    assert untold([*jolts, *struck, *thrown, *ends, *others]) == []
+
+
+def _cuts(function: ast.FunctionDef) -> list[str]:
+    """Return what is added to a text, where a flight is too low to be followed."""
+    added = [node.value for node in ast.walk(function) if isinstance(node, ast.AugAssign)]
+    return [text for value in added for text in _template(value, {})]
 
 
 @pytest.mark.parametrize("name", ["roll-small-loop", "roll-x-then-y"])

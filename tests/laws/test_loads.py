@@ -65,6 +65,7 @@ def test_up_a_steeper_slope_it_stops_for_an_instant_and_rolls_back(friction: flo
     run = tr.simulate(system, system.place(velocity=(-0.3, 0.0)), duration=2.0, every=0.05, method=method)
     up, down = (G * (math.sin(0.1) + way * 1e-3 / RADIUS * math.cos(0.1)) / (1 + K) for way in (1, -1))
     assert [event.kind for event in run.events] == ["stop", "start"]
+    assert run.events[0].text.startswith("stopped turning over the support at")  # it does not stay at rest
     for event in run.events:
         assert abs(event.time - 0.3 / up) <= SOLVER(100, run.tolerance)
     first = 4e-12 * math.sqrt(G * RADIUS)  # m/s, the way it is driven, with which it begins to roll from rest

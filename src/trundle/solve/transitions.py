@@ -195,12 +195,10 @@ def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
     """Return the kinds of the events between two phases that a stop has parted, and what is said of them."""
     if stop == "start" and after == RollingLaw.code:
         return (_BEGAN_TO_ROLL,)
-    if stop == "stop" and (before, after) == (RollingLaw.code, SlippingLaw.code):  # the resistance jumps, and friction
-        return ("stop", "stopped turning over the support"), _NAMES[after]
-    if before != after:
-        return (_NAMES[after],)
-    # Only turning that ends lets rolling follow rolling: what drives the body overcomes the resistance at once.
-    return (_NAMES[RestingLaw.code], _BEGAN_TO_ROLL) if after == RollingLaw.code else (("slip", _SLIPS_ON[stop]),)
+    if stop == "stop" and before == RollingLaw.code and after in (RollingLaw.code, SlippingLaw.code):
+        # The resistance jumps: friction gives way, or what drives the body overcomes it at once.
+        return _STOPPED_TURNING, _BEGAN_TO_ROLL if after == before else _NAMES[after]
+    return (_NAMES[after] if before != after else ("slip", _SLIPS_ON[stop]),)
 
 
 def slipping(system: RollingSystem, now: PhaseStart) -> PhaseStart:
@@ -224,7 +222,7 @@ _SLIPS_ON = {
     "stop": "stopped turning over the support as it slipped",
     "start": "began to turn over the support as it slipped",
 }
-_BEGAN_TO_ROLL = ("start", "began to roll")
+_STOPPED_TURNING, _BEGAN_TO_ROLL = ("stop", "stopped turning over the support"), ("start", "began to roll")
 _NAMES = {
     RollingLaw.code: ("grip", "gripped and rolled"),
     SlippingLaw.code: ("slip", "began to slip"),
