@@ -25,7 +25,7 @@ from ..solve.contact_state import ContactState
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from ..solve.transitions import JOLT
 from .acting import acting, cross
-from .bounds import A_STEP, SOLVER, Array, blur_of, largest, sizes_of
+from .bounds import A_STEP, SINGULAR, SOLVER, Array, blur_of, largest, sizes_of
 from .card import CardFigure
 from .each_sample import EachSample, Shares, worst_of
 from .friction import holding, normal_and_friction
@@ -139,6 +139,10 @@ class AtEvents:
         first, last = group[0], group[-1]
         if before is not None:
             changing = self._in_a_moment(before, time - since)
+            if (
+                first.kind in SINGULAR
+            ):  # Ω and V go with the root of the time that is left: twice as far as by their rates
+                changing = {name: 2 * share for name, share in changing.items()}
             yield from self._same(first, before.state(0), first.before, "no jump before", changing)
             yield from self._met(first, before)
         if last.final:
@@ -183,13 +187,19 @@ class AtEvents:
         pace = np.linalg.norm(V) / sizes["position"] + np.linalg.norm(Omega)
         moment = span + np.spacing(abs(float(at.time[0]))) + A_STEP * self.bound / SOLVER / max(float(pace), 1e-300)
         turned = np.linalg.solve(J, K - gyroscopic + cross(at.contact[0] - at.position[0], R))
-        rates = {"velocity": (F + R) / float(self.system.body.mass), "angular_velocity": turned}
+        rates = {
+            "position": V,
+            "velocity": (F + R) / float(self.system.body.mass),
+            "angular_velocity": turned,
+            "orientation": 0.5 * Omega,
+        }
         motion = self.system.support.motion
         if motion.free:
             lever = _row(at.support(self.system).lever(Vector.of(at.contact)))
             rates["support"], sizes = lever @ R / float(motion.inertia), {**sizes, "support": self._own}
         changed = {name: float(np.linalg.norm(rate)) * moment for name, rate in rates.items()}
-        changed["position"] = blur = blur_of(self.system, at)
+        blur = blur_of(self.system, at)
+        changed["position"] += blur
         changed["velocity"] += blur * float(np.linalg.norm(Omega))
         return {name: change / max(sizes[name], 1e-300) for name, change in changed.items()}
 
