@@ -6,6 +6,7 @@ from tests.tolerances import SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
+from trundle.scenario import files
 from trundle.solve import phases
 from trundle.solve.methods import METHODS, Method
 from trundle.solve.patience import Patience
@@ -212,3 +213,25 @@ def test_a_step_that_ends_a_rounding_beyond_a_sample_has_that_sample() -> None:
     assert often.data.time.size == 101
     apart = often.data.position.values[-1] - once.data.position.values[-1]
     assert np.abs(apart).max() <= SOLVER(1e3, 1e-15, 50.0)
+
+
+@pytest.mark.parametrize("begin", [1e4, -3e4, 1e5])
+@pytest.mark.parametrize(
+    "name", ["tilted-turntable", "billiard-draw", "off-the-rim", "chaplygin-ball", "free-turntable-ellipse"]
+)
+def test_closed_forms_turn_a_body_by_the_time_since_they_began(name, begin):
+    # By the clock itself Ω is known only to its last digit, and the orientation could not be followed.
+    tables = files.tables_of(name)
+    runs = [tr.Scenario.read(tables | {"start": tables["start"] | {"time": time}}, name).run() for time in (0.0, begin)]
+    early, late = (run.data.orientation.values for run in runs)
+    turned = np.spacing(abs(begin)) * np.abs(runs[0].data.angular_velocity.values).max()
+    assert np.abs(late[:200] - early[:200]).max() < 10 * turned + 1e-11
+
+
+@pytest.mark.parametrize("begin", [1e4, -3e5, 1e6])
+@pytest.mark.parametrize("name", ["billiard-draw", "superball", "loop-the-loop-too-slow", "turntable-drop"])
+def test_events_are_met_to_the_last_digit_of_the_clock(name, begin):
+    tables = files.tables_of(name)
+    run = tr.Scenario.read(tables | {"start": tables["start"] | {"time": begin}}, name).run()
+    assert run.events
+    assert run.card()["events at their instants"].passed

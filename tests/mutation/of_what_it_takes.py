@@ -66,8 +66,8 @@ ORIENTATION = (
     Mutant(
         "closed form: q by Ω of a moment later",
         "solve.closed_form",
-        "return angular_velocity(t - start.time)",
-        "return angular_velocity(t - start.time + 1e-3)",
+        "Omega = motion.angular_velocity_at(t)",
+        "Omega = motion.angular_velocity_at(t + 1e-3)",
         "turntable_exactly",
     ),
     Mutant(

@@ -277,7 +277,8 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     >>> orientations(closed_form(system, start), start, np.array([0.0]))[0].tolist()
     [1.0, 0.0, 0.0, 0.0]
     """
-    straight = motion.fixed_axis_rotation(times - start.time)
+    elapsed = times - start.time
+    straight = motion.fixed_axis_rotation(elapsed)
     if straight is not None:
         axis, angle = straight
         half, q = 0.5 * angle + np.zeros_like(times), Quaternion(*start.orientation)
@@ -288,14 +289,11 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
         Omega = motion.angular_velocity_at(t)
         return np.stack(np.broadcast_arrays(Omega.x, Omega.y, Omega.z, t))[:3]
 
-    def absolute(t: Array) -> Array:
-        return angular_velocity(t - start.time)
-
-    long = times[-1] - start.time > _PERIODS_WORTH_A_MONODROMY * motion.period
+    long = elapsed[-1] > _PERIODS_WORTH_A_MONODROMY * motion.period
     monodromy = motion.monodromy() if long else None
     if monodromy is not None:
-        return periodic_orientation(angular_velocity, monodromy, times, start.orientation, start.time)
+        return periodic_orientation(angular_velocity, monodromy, elapsed, start.orientation)
     try:
-        return orientation(absolute, times, start.orientation, start.time)
+        return orientation(angular_velocity, elapsed, start.orientation)
     except SolverError as error:  # a method that takes steps may still follow it
         raise TurnsTooFastError(f"{error} A numerical method may do.") from None

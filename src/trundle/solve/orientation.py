@@ -328,16 +328,13 @@ def _running_product(turns: Pairs) -> Pairs:
     return grid.reshape(2, -1)[:, :count]
 
 
-def periodic_orientation(
-    angular_velocity: AngularVelocity, monodromy: Monodromy, times: Array, start: Any, start_time: float = 0.0
-) -> Array:
-    """Return the orientation at given times where Ω(t) repeats: any time costs what one period costs.
+def periodic_orientation(angular_velocity: AngularVelocity, monodromy: Monodromy, elapsed: Array, start: Any) -> Array:
+    """Return the orientation at times since the start where Ω(t) repeats: any time costs what one period costs.
 
     Examples
     --------
     See `trundle.solve.monodromy.Monodromy`.
     """
-    elapsed = np.asarray(times, dtype=float) - start_time
     turns = np.floor(elapsed / monodromy.period)
     turns -= _rest(elapsed, turns, monodromy) < 0  # the quotient was rounded up to a whole turn
     rest = np.clip(_rest(elapsed, turns, monodromy), 0.0, None)

@@ -15,6 +15,7 @@ import numpy as np
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at, roll
 from ..mechanics.system import RollingSystem
+from ..solve.contact_state import ContactState
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from .bounds import EXACT, Array, largest, speed_of
 from .card import CardFigure, checked
@@ -22,7 +23,7 @@ from .card import CardFigure, checked
 _WORTH_TELLING = 1e-3  # of its bound
 _ROUNDING = 1e-15  # of a place: a few roundings
 _LASTING = 0.1  # rad, or of a body's size: what comes off is a ten-thousandth of it away by then
-_PULLS = 1e-9  # share of the force: more than rounding
+_PULLS = 1e-13  # share of the forces at hand: more than rounding, and less than what a flight begins with
 _STEP = 1e-6  # of a length, for the slope of the level function
 
 
@@ -160,11 +161,11 @@ class EachSample:
         """Tell whether the support would have to pull a body that rolled on from an event."""
         if since.after is None or since.contact is None:
             return False
+        at = ContactState.of(self.system, since.after, Vector(*since.contact))
         state = since.after
-        p, q, Omega = Vector(*since.contact), Quaternion(*state.orientation), Vector(*state.angular_velocity)
-        rolling = roll(self.system, state.time, p, q, Omega, state.support)
-        N, force = rolling.reaction.dot(rolling.contact.normal), rolling.reaction.norm()
-        return float(N) < -_PULLS * float(force)
+        rolling = roll(self.system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+        N = float(rolling.reaction.dot(rolling.contact.normal))
+        return N + _PULLS * at.forces(self.system) < 0
 
     def _aside(self, apart: Array, gap: Array) -> Array:
         """Return how far the two points are beside each other, m; in flight no more than how far p is beside its place.

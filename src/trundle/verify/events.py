@@ -144,7 +144,7 @@ class AtEvents:
             ):  # Ω and V go with the root of the time that is left: twice as far as by their rates
                 changing = {name: 2 * share for name, share in changing.items()}
             yield from self._same(first, before.state(0), first.before, "no jump before", changing)
-            yield from self._met(first, before)
+            yield from self._met(first, before, changing)
         if last.final:
             return
         if after is not None:
@@ -201,7 +201,8 @@ class AtEvents:
         blur = blur_of(self.system, at)
         changed["position"] += blur
         changed["velocity"] += blur * float(np.linalg.norm(Omega))
-        return {name: change / max(sizes[name], 1e-300) for name, change in changed.items()}
+        shares = {name: change / max(sizes[name], 1e-300) for name, change in changed.items()}
+        return {**shares, "force": float(pace) * moment}
 
     def _same(
         self,
@@ -225,8 +226,10 @@ class AtEvents:
             allowed = _GOES_ON * self.bound + changing.get("support", 0.0)
             yield event, f"{what} of the support", apart / max(self._own, 1e-300), allowed
 
-    def _met(self, event: Event, at: Samples) -> Iterator[tuple[Event, str, float, float]]:
-        """Yield whether the condition of an event was met just before it."""
+    def _met(
+        self, event: Event, at: Samples, changing: Mapping[str, float]
+    ) -> Iterator[tuple[Event, str, float, float]]:
+        """Yield whether the condition of an event was met just before it, but for what changed since."""
         phase, each = int(at.phase[0]), EachSample(self.system, at, self.bound)
         if event.final:
             yield from self._ended(event, at, each)
@@ -242,24 +245,27 @@ class AtEvents:
         if phase == FLIGHT:
             apart, height = each.apart
             gap = abs(float(apart[0] @ each.normals[0])) + abs(float(height[0]))
-            yield event, "gap 0", gap / self._sizes["position"], _GOES_ON * self.bound
+            allowed = _GOES_ON * self.bound + changing["position"] + changing["orientation"]
+            yield event, "gap 0", gap / self._sizes["position"], allowed
             return
         N, f = (np.asarray(part)[0] for part in normal_and_friction(self.system, at))
         force = max(self._sizes["contact_force"], 1e-300)
         if event.kind == "lift":
-            yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound
+            yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound + changing["force"]
         elif phase == SLIPPING:
-            yield event, *self._slipped(event, at, each)
+            what, share, allowed = self._slipped(event, at, each)
+            yield event, what, share, allowed + changing["velocity"] + changing["angular_velocity"]
         elif phase == RESTING and event.kind != "slip":
             yield event, "the resistance is overcome", self._short_of_turning(at), _SLACK
         elif event.kind == "slip":
-            yield event, "|f| = μN", self._short_of_slipping(float(N), f) / force, _SLACK + _GOES_ON * self.bound
+            allowed = _SLACK + _GOES_ON * self.bound + changing["force"]
+            yield event, "|f| = μN", self._short_of_slipping(float(N), f) / force, allowed
         elif event.kind == "stop":
             yield (
                 event,
                 "it no longer turns",
                 self._turning(at, each) / self._sizes["angular_velocity"],
-                _GOES_ON * self.bound,
+                _GOES_ON * self.bound + changing["angular_velocity"],
             )
 
     def _borne(self, kink: Kink, at: Samples) -> float:
