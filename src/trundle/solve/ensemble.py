@@ -35,7 +35,7 @@ from .transitions import PhaseStart, ZeroCrossing
 
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
-_COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
+_COMPLETED = 8000  # samples that are completed at once, at least: of few, each costs more
 _STEPS = 300  # at most, between which lanes that are free are taken again
 _FEWEST = 20_000  # steps times `Lowered.cost`, at least: what else is done between two calls takes half of that
 # By `Lowered.cost`: what is longer does not fit the processor's nearest memories when its loops are unrolled.
@@ -261,16 +261,20 @@ class _Compiled:
         self.zeros, self.tolerance = frozenset(np.flatnonzero(zeros).tolist()), tolerance
         self.unrolled = unrolled
         self.lock = threading.Lock()
-        self.known: dict[Any, list[tuple[Lowered, str]]] = {}
+        self.known: dict[Any, list[tuple[Lowered, str]]] = {}  # by law and charts
+        self.of: dict[Any, list[tuple[Lowered, str]]] = {}  # the same by system and law
 
     def chosen(self, system: RollingSystem, law: Law, state: Sequence[float]) -> tuple[Lowered, str]:
         """Return a law in the chart of fewest operations around a state."""
-        among = charts(system, law)
-        one = law.identity, among
-        if one not in self.known:
-            with self.lock:
-                self.known[one] = integrators.ready_in(system, law, self.tolerance, self.zeros, among)
-        return next(each for each in self.known[one] if each[0].chart.contains(state))
+        seen = id(system), law.identity  # many may share one system
+        if seen not in self.of:
+            among = charts(system, law)
+            one = law.identity, among
+            if one not in self.known:
+                with self.lock:
+                    self.known[one] = integrators.ready_in(system, law, self.tolerance, self.zeros, among)
+            self.of[seen] = self.known[one]
+        return next(each for each in self.of[seen] if each[0].chart.contains(state))
 
     def integrator(self, lowered: Lowered, key: str) -> tuple[Any, str]:
         """Return one that nobody else uses, and the name under which to put it back."""

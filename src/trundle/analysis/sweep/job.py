@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 Columns = dict[str, Any]  # one array for each variable, a row for each member
 
 
-_LARGEST = 128  # members of a block
+_LARGEST = 256  # members of a block
 
 
 def block_of(members: int) -> int:
@@ -40,7 +40,7 @@ def block_of(members: int) -> int:
     Examples
     --------
     >>> block_of(100), block_of(100_000)
-    (8, 128)
+    (8, 256)
     """
     return next(block for least, block in ((4096, _LARGEST), (512, 32), (0, 8)) if members >= least)
 
