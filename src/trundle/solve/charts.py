@@ -18,7 +18,7 @@ from ..mechanics.algebra import Matrix, Quaternion, Vector
 from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.motions import Motion, SupportState
-from ..mechanics.scalars import Scalar, as_float, namespace
+from ..mechanics.scalars import Scalar, as_float, is_zero, namespace
 from ..mechanics.symmetry import on_plane
 from ..mechanics.system import RollingSystem
 from . import corner_events
@@ -67,9 +67,10 @@ class Chart:
         self, system: RollingSystem, law: Law, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> Traced:
         """Return the rates of its numbers, and the event functions."""
-        stops = corner_events.all_event_functions(system, law, time, state, event_parameters)
+        seen = _unturned(system)
+        stops = corner_events.all_event_functions(seen, law, time, state, event_parameters)
         p, *_, coordinates = law.split(state)
-        return Traced(law.rates(system, time, state), stops, normal_at(system, time, p, coordinates))
+        return Traced(law.rates(seen, time, state), stops, normal_at(seen, time, p, coordinates))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the state with p moved along the normal to φ(p) = 0, by one step of Newton's method, and q/|q|.
@@ -77,7 +78,7 @@ class Chart:
         What rounding leaves of both is so small that the step's own error is its square.
         """
         p, q, _, _, coordinates = law.split(state)
-        support = system.support.motion.at(time, *coordinates)
+        support = _unturned(system).support.motion.at(time, *coordinates)
         p = p + support.rotation @ system.support.surface.step_onto(support.local(p))
         return [*p, *_unit(q), *state[7:]]
 
@@ -314,12 +315,21 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
         return (LAWS_OWN,)
     flat, rate = on_plane(system), system.support.motion.steady_rate
     found: list[Chart] = [LAWS_OWN, BodyAxes(flat)]
-    # A surface of revolution is at rest along the axes of the support frame, too, where nothing turns as fast.
+    # A surface of revolution is the same at any angle, and nothing else turns as fast.
     if rate is not None and rate != 0 and not system.support.surface.axisymmetric:
         found.append(SupportAxes(flat))
     if flat and system.body.axisymmetric:
         found.append(LineOfNodes())
     return tuple(found)
+
+
+def _unturned(system: RollingSystem) -> RollingSystem:
+    """Return a system without the angle of a surface of revolution that turns steadily: it is the same at any."""
+    rate = system.support.motion.steady_rate
+    if rate is None or is_zero(rate) or not system.support.surface.axisymmetric:
+        return system
+    motion = _SeenMotion(system.support.motion, Matrix.identity(), True)
+    return replace(system, support=replace(system.support, motion=motion))
 
 
 def along_axes(system: RollingSystem, axes: Matrix, orientation: Quaternion) -> RollingSystem:
