@@ -67,7 +67,7 @@ class Chart:
         self, system: RollingSystem, law: Law, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> Traced:
         """Return the rates of its numbers, and the event functions."""
-        seen = _unturned(system)
+        seen = _unturned(system, law)
         stops = corner_events.all_event_functions(seen, law, time, state, event_parameters)
         p, *_, coordinates = law.split(state)
         return Traced(law.rates(seen, time, state), stops, normal_at(seen, time, p, coordinates))
@@ -78,7 +78,7 @@ class Chart:
         What rounding leaves of both is so small that the step's own error is its square.
         """
         p, q, _, _, coordinates = law.split(state)
-        support = _unturned(system).support.motion.at(time, *coordinates)
+        support = _unturned(system, law).support.motion.at(time, *coordinates)
         p = p + support.rotation @ system.support.surface.step_onto(support.local(p))
         return [*p, *_unit(q), *state[7:]]
 
@@ -323,10 +323,13 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     return tuple(found)
 
 
-def _unturned(system: RollingSystem) -> RollingSystem:
-    """Return a system without the angle of a surface of revolution that turns steadily: it is the same at any."""
+def _unturned(system: RollingSystem, law: Law) -> RollingSystem:
+    """Return a system without the angle of a surface of revolution that turns steadily: it is the same at any.
+
+    Variational equations take the numbers out of the system itself.
+    """
     rate = system.support.motion.steady_rate
-    if rate is None or is_zero(rate) or not system.support.surface.axisymmetric:
+    if rate is None or is_zero(rate) or law.variational or not system.support.surface.axisymmetric:
         return system
     motion = _SeenMotion(system.support.motion, Matrix.identity(), True)
     return replace(system, support=replace(system.support, motion=motion))

@@ -302,10 +302,15 @@ class Member:
         self.index, self.system, self.numbers, self.times, self.legs_from = index, system, numbers, times, legs
         self.compiled = compiled
         self.samples: list[Samples] = []  # of instants that no stretch holds
-        self.course = phases.course(system, start, times, self.samples.append)
+        self.course = phases.course(system, start, times, self.samples.append, sampled=self._asked)
         self.patience = taylor.Shared().patience(float(times[0]), float(times[-1]))
         self.now: PhaseStart
         self.left: Array
+
+    def _asked(self, time: float) -> bool:
+        """Tell whether an instant is one of those asked for."""
+        row = int(self.times.searchsorted(time))
+        return row < self.times.size and bool(self.times[row] == time)
 
     def set_out(self) -> bool:
         """Go to the first stretch; tell whether there is one."""

@@ -146,6 +146,7 @@ def course(
     begin: Callable[[RollingSystem, PhaseStart], PhaseStart] = corners.beyond,
     bends: Sequence[Kink] = (),
     remember: Callable[[Callable[[], PhaseStart], Law, ZeroCrossing], PhaseStart] = lambda follows, *_: follows(),
+    sampled: Callable[[float], bool] = lambda _: True,
 ) -> Course:
     """Lead a body through its phases: say which law is to be followed over which times, be told how far it held.
 
@@ -165,6 +166,8 @@ def course(
         The kinks of its formulas in the time.
     remember : callable, optional
         As of `solve`.
+    sampled : callable, optional
+        Whether a sample is wanted at the instant at which the run ends. Without one its event knows no state.
 
     Yields
     ------
@@ -201,9 +204,11 @@ def course(
             return tuple(events)
         stop = _on_kink(system, law, stop, bends)
         if stop.name in ENDS or _spinning_on(system, law, stop):
-            samples, event = _ended(system, law, stop)
+            if not sampled(stop.time):
+                return (*events, _end(system, stop))
+            samples = law.record(system, np.array([stop.time]), stop.state_vector[None])
             put(samples)
-            return (*events, event)
+            return (*events, _end(system, stop, samples))
         now = remember(partial(lambda *ended: behind(following_stop(system, *ended)), law, stop), law, stop)
         events += now.events
         _check_count(system, events)
@@ -432,11 +437,14 @@ def _spinning_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> bool:
     return ends and transitions.spins_on(system, law, stop)
 
 
-def _ended(system: RollingSystem, law: Law, stop: ZeroCrossing) -> tuple[Samples, Event]:
-    samples = law.record(system, np.array([stop.time]), stop.state_vector[None])
+def _end(system: RollingSystem, stop: ZeroCrossing, samples: Samples | None = None) -> Event:
+    """Return the event with which a run ends, given the sample there."""
     name = "spot" if stop.name.endswith(("stop", "grip")) else stop.name
+    said = ended_in_words(system, name, stop.time)
+    if samples is None:
+        return Event(stop.time, name, said)
     state, contact = samples.state(0), tuple(samples.contact[0].tolist())
-    return samples, Event(state.time, name, ended_in_words(system, name, state.time), state, state, contact)
+    return Event(state.time, name, said, state, state, contact)
 
 
 def ended_in_words(system: RollingSystem, name: str, time: float) -> str:
