@@ -35,7 +35,7 @@ from .transitions import PhaseStart, ZeroCrossing
 
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
-_COMPLETED = 8000  # samples that are completed at once, at least: of few, each costs more
+_COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
 _STEPS = 300  # at most, between which lanes that are free are taken again
 _FEWEST = 20_000  # steps times `Lowered.cost`, at least: what else is done between two calls takes half of that
 # By `Lowered.cost`: what is longer does not fit the processor's nearest memories when its loops are unrolled.
