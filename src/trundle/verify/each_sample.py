@@ -162,8 +162,7 @@ class EachSample:
         if since.after is None or since.contact is None:
             return False
         at = ContactState.of(self.system, since.after, Vector(*since.contact))
-        state = since.after
-        rolling = roll(self.system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+        rolling = roll(self.system, at.state.time, at.contact.point, at.orientation, at.Omega, at.state.support)
         N = float(rolling.reaction.dot(rolling.contact.normal))
         return N + _PULLS * at.forces(self.system) < 0
 

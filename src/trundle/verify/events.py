@@ -139,9 +139,7 @@ class AtEvents:
         first, last = group[0], group[-1]
         if before is not None:
             changing = self._in_a_moment(before, time - since)
-            if (
-                first.kind in SINGULAR
-            ):  # Ω and V go with the root of the time that is left: twice as far as by their rates
+            if first.kind in SINGULAR:  # V and Ω go with the root of the time left: twice as far as their rates say
                 changing = {name: 2 * share for name, share in changing.items()}
             yield from self._same(first, before.state(0), first.before, "no jump before", changing)
             yield from self._met(first, before, changing)
