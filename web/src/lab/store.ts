@@ -4,6 +4,10 @@ import type { Scenario } from './scenario'
 export interface Change {
   /** What made it: 'control', 'drag', 'undo', 'open', 'url', a page's own word; 'first' cannot be undone. */
   source: string
+  /** Another scenario was opened: what is shown of it begins from nothing. */
+  opens?: boolean
+  /** The motion begins anew, from where a body was. */
+  restarts?: boolean
   /** Changes of one gesture (a slider being dragged) share a word, and undo as one. */
   gesture?: string | undefined
 }

@@ -7,9 +7,19 @@ import type { Scenario } from '../scenario'
 import type { Change } from '../store'
 import type { CardState } from './card'
 
+/** How a scene stands to what was shown before it. */
+export interface Since {
+  /** Of another scenario that was opened: nothing of the view is kept. */
+  fresh: boolean
+  /** The motion begins anew. */
+  restart: boolean
+  /** Of the scenario that is shown already, in full. */
+  again: boolean
+}
+
 export interface Listener {
-  /** `again`: of the scenario that is shown already, in full; `curves`: with them. */
-  scene(scene: Scene, milliseconds: number, again: boolean, curves: boolean): void
+  /** `curves`: the scene has them. */
+  scene(scene: Scene, milliseconds: number, since: Since, curves: boolean): void
   /** The numbers rest. */
   settled(scene: Scene): void
   failed(error: unknown): void
@@ -30,8 +40,15 @@ const QUICK = { tolerance: 1e-9 }
 const MOVING = { ...QUICK, samples: 1000 }
 const REST = 600
 
+/** How often a scenario was opened, and a motion begun anew: a scene that comes late tells of its own, not of the newest. */
+interface Counts {
+  opened: number
+  restarted: number
+}
+
 interface Asked {
   scenario: Scenario
+  counts: Counts
   /** What is shown and changes under a hand, or rests now; absent where another is opened, with one answer for all. */
   like?: Scene | undefined
   /** How little is enough for now; absent: all there is. */
@@ -45,16 +62,23 @@ function coarse({ columns, header }: Scene, { enough }: Asked): boolean {
   return header.tolerance >= tolerance || columns.time.length >= samples || !curves
 }
 
-export function createComputing(app: App, listener: Listener): Computing {
+export function createComputing(app: Pick<App, 'api'>, listener: Listener): Computing {
   let rest: ReturnType<typeof setTimeout> | undefined
   let shown: { scene: Scene; asked: Asked } | undefined
+  let counts: Counts = { opened: 1, restarted: 0 }
+  let last: Counts = { opened: 0, restarted: 0 }
 
   const runner = createRunner<Asked, { scene: Scene; milliseconds: number }>({
     run: ({ scenario, like, enough }, signal) => app.api.simulate(scenario, { signal, lane: null, like, ...enough }),
     done({ scene, milliseconds }, asked) {
-      const again = shown?.asked.scenario === asked.scenario
+      const since = {
+        fresh: last.opened !== asked.counts.opened,
+        restart: last.restarted !== asked.counts.restarted,
+        again: shown?.asked.scenario === asked.scenario,
+      }
+      last = asked.counts
       shown = { scene, asked }
-      listener.scene(scene, milliseconds, again, asked.enough?.curves ?? true)
+      listener.scene(scene, milliseconds, since, asked.enough?.curves ?? true)
     },
     failed: (error) => {
       shown = undefined
@@ -68,7 +92,7 @@ export function createComputing(app: App, listener: Listener): Computing {
   async function whenAtRest(scenario: Scenario): Promise<void> {
     if (shown?.asked.scenario !== scenario) return
     listener.settled(shown.scene)
-    if (coarse(shown.scene, shown.asked)) runner.ask({ scenario, like: shown.scene })
+    if (coarse(shown.scene, shown.asked)) runner.ask({ scenario, counts: shown.asked.counts, like: shown.scene })
     if (!scenario.support) {
       listener.card({ state: 'none', message: 'A path that is rolled without forces has no card.' })
       return
@@ -96,8 +120,12 @@ export function createComputing(app: App, listener: Listener): Computing {
       app.api.cancel('card')
       app.api.cancel('possible')
       listener.card({ state: 'waiting' })
-      if (change?.gesture === undefined) runner.ask({ scenario, enough: QUICK })
-      else runner.ask({ scenario, enough: { ...MOVING, curves: listener.curves }, like: shown?.scene })
+      counts = {
+        opened: counts.opened + Number(change?.opens ?? false),
+        restarted: counts.restarted + Number(change?.restarts ?? false),
+      }
+      if (change?.gesture === undefined) runner.ask({ scenario, counts, enough: QUICK })
+      else runner.ask({ scenario, counts, enough: { ...MOVING, curves: listener.curves }, like: shown?.scene })
       later(scenario)
     },
     stop() {

@@ -46,16 +46,12 @@ function _mount(host: HTMLElement, app: App): () => void {
     'Results',
   )
   const afterwards = createAfterwards()
-  let fresh = true
-  let restart = false
   let idle = true
 
   const computing = createComputing(app, {
-    scene(scene, milliseconds, again, withCurves) {
+    scene(scene, milliseconds, { fresh, restart, again }, withCurves) {
       stage.setScene(scene, { camera: !fresh, time: !fresh && !restart, rests: again })
       if (fresh) sayPace(stage.viewer.suit())
-      fresh = false
-      restart = false
       stage.stale(null)
       controls.complain(null)
       // The path first: to lay out the numbers takes as long as to draw it.
@@ -99,9 +95,8 @@ function _mount(host: HTMLElement, app: App): () => void {
   }
 
   function opened(scenario: Scenario, source: string): void {
-    fresh = true
     stage.useTool('orbit')
-    store.set(scenario, { source })
+    store.set(scenario, { source, opens: true })
   }
 
   async function take(name: string, source = 'open'): Promise<void> {
@@ -203,9 +198,7 @@ function _mount(host: HTMLElement, app: App): () => void {
 
   undo.add(
     listen(narrow, 'change', arrange),
-    store.subscribe((scenario, change) => {
-      if (change.source === 'undo' || change.source === 'redo') fresh = false
-      if (change.source === 'nudge') restart = true
+    store.subscribe((scenario) => {
       showScenario(scenario)
       linking.changed(scenario)
     }),

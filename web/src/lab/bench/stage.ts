@@ -223,7 +223,7 @@ export function createStage(app: App): Stage {
     if (!scene) return
     const at = sampleAt(scene, when)
     const done = `Nudged at ${show(at.time, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`
-    starts.ask({ by: [{ at, nudge: by }], change: { source: 'nudge' }, done })
+    starts.ask({ by: [{ at, nudge: by }], change: { source: 'nudge', restarts: true }, done })
   }
 
   /** What the arrow keys have made of the start, or of the velocity, since they were pressed first. */

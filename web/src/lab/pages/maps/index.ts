@@ -118,6 +118,7 @@ function show(host: HTMLElement, app: App, sweeps: Sweeps, leaving: AbortSignal)
   /** Show another map from its beginning. */
   function begin(next: Asked, point: [number, number] | null = null): void {
     asked = next
+    playing.stop()
     run = null
     bench.disabled = true
     framed = false
