@@ -7,8 +7,10 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from .bench import Bench
-from .launching import LAPTOP, PHONE
+from trundle.lab.challenges import names
+
+from .bench import Bench, eventually
+from .launching import LAPTOP, PHONE, SMALL
 from .screenshots import PAGES
 from .test_lab_access import STAGED, come_to_rest, settle
 from .visiting import Visitor
@@ -87,6 +89,26 @@ def test_a_step_of_the_tour_is_seen_at_once_on_a_laptop(step: int, kept: Page) -
         numbers = box(kept, last)
         assert numbers["y"] >= stage["bottom"] - 1
         assert numbers["bottom"] <= nav["y"] + 1
+
+
+@pytest.mark.parametrize("route", [*(f"#/tour/{step}" for step in range(1, 8)), *map("#/challenges/{}".format, names())])
+def test_in_a_window_too_low_for_all_the_picture_stays_and_the_rest_is_scrolled(route: str, kept: Page) -> None:
+    kept.set_viewport_size(SMALL)
+    kept.evaluate("route => { location.hash = route }", route)
+    kept.locator("[data-testid=stage]").first.wait_for(state="attached")
+    least = 7 * 16 if kept.locator(".tour-stage .side").count() else 9.5 * 16
+    assert box(kept, "[data-testid=stage]")["height"] >= least, "while nothing is drawn yet"
+    at(kept, route, SMALL)
+    stage = box(kept, "[data-testid=stage]")
+    assert stage["height"] >= least
+    assert stage["bottom"] <= box(kept, ".tour-nav")["y"]
+    kept.mouse.move(stage["x"] + stage["width"] + 10, 0.5 * SMALL["height"])
+    kept.mouse.wheel(0, 5000)
+
+    def reached() -> None:
+        assert box(kept, ".tour-do")["bottom"] <= box(kept, ".tour-nav")["y"] + 1
+
+    eventually(kept, reached)
 
 
 @pytest.mark.parametrize("size", LOW, ids=str)
