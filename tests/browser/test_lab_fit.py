@@ -91,7 +91,9 @@ def test_a_step_of_the_tour_is_seen_at_once_on_a_laptop(step: int, kept: Page) -
         assert numbers["bottom"] <= nav["y"] + 1
 
 
-@pytest.mark.parametrize("route", [*(f"#/tour/{step}" for step in range(1, 8)), *map("#/challenges/{}".format, names())])
+@pytest.mark.parametrize(
+    "route", [*(f"#/tour/{step}" for step in range(1, 8)), *map("#/challenges/{}".format, names())]
+)
 def test_in_a_window_too_low_for_all_the_picture_stays_and_the_rest_is_scrolled(route: str, kept: Page) -> None:
     kept.set_viewport_size(SMALL)
     kept.evaluate("route => { location.hash = route }", route)

@@ -92,6 +92,15 @@ class SurfaceContract:
         assert same == all(size_of(self.surface.shape_operator(p)) <= EXACT(16, 1 / self.length) for p in points)
 
     @precisely
+    def test_lengths_that_it_says_are_known_are_so_on_it_alone(self) -> None:
+        for p in self.points():
+            by = self.surface.normal(p) * (self.length / 1000)
+            over = self.surface.known_lengths(p + by)
+            for (length, known), (longer, as_known) in zip(self.surface.known_lengths(p), over, strict=True):
+                assert abs(length - known) <= EXACT(16, self.length)
+                assert abs(longer - as_known) > self.length / 10**5  # it is worked out where it is asked for
+
+    @precisely
     def test_a_step_onto_it_leaves_the_square_of_what_was_off(self) -> None:
         for p in self.points():
             by = self.length / 10**6

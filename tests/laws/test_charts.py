@@ -121,6 +121,8 @@ def test_the_law_is_the_same_whatever_rolls_on_whatever(drawn: tuple[tr.RollingS
         assume(False)
     state[7:10] = np.random.default_rng(seed).normal(size=3).tolist()
     assume(system.support.surface.analytic and np.isfinite(wanted).all() and max(map(abs, wanted)) < 1e6)
+    touching = system.support.motion.at(start.time, *start.support).local(Vector(*state[:3]))
+    assume(abs(system.support.surface.level(touching)) < 1e-12)  # where a body falls, no law of rolling holds
     for chart in charts(system, RollingLaw()):
         if chart.contains(state):
             hold(system, lowered_in(system, chart), start.time, state)

@@ -90,8 +90,8 @@ GEOMETRY = (
     Mutant(
         "ellipsoid: C 1 % too large",
         "mechanics.shapes.ellipsoid",
-        "return (A - Matrix.outer(x, x)) * shrunk",
-        "return (A - Matrix.outer(x, x)) * (1.01 * shrunk)",
+        "return ReducedTensor.of(A, x, shrunk)",
+        "return ReducedTensor.of(A, x, 1.01 * shrunk)",
         EGG,
     ),
     Mutant(

@@ -330,6 +330,62 @@ class RoundTensor(Matrix):
 
 
 @frozen_record()
+class ReducedTensor(Matrix):
+    """c(A − x xᵀ), as the inverse curvature of an ellipsoid is.
+
+    Its elements are at hand, as a matrix's; to apply it takes fewer products than to work them out.
+
+    Examples
+    --------
+    >>> ReducedTensor.of(Matrix.identity(), Vector(0.0, 0.0, 1.0), 2.0).on_tangent(Vector(1.0, 0.0, 0.0)).x
+    2.0
+    """
+
+    whole: Matrix
+    taken: Vector
+    scale: Scalar
+
+    @staticmethod
+    def of(A: Matrix, x: Vector, scale: Scalar) -> ReducedTensor:
+        """Return c(A − x xᵀ)."""
+        made = (A - Matrix.outer(x, x)) * scale
+        return ReducedTensor(made.a, made.b, made.c, A, x, scale)
+
+    def __mul__(self, factor: Scalar) -> ReducedTensor:
+        a, b, c = (row * factor for row in self.rows)
+        return ReducedTensor(a, b, c, self.whole, self.taken, self.scale * factor)
+
+    __rmul__ = __mul__
+
+    def on_tangent(self, v: Vector) -> Vector:
+        """Return c(A v − x(x·v))."""
+        return (self.whole @ v - self.taken * self.taken.dot(v)) * self.scale
+
+
+@frozen_record()
+class DefiniteMatrix(Matrix):
+    """A symmetric, positive definite matrix, which elimination solves without pivots: half the products of cofactors.
+
+    Examples
+    --------
+    >>> DefiniteMatrix(Vector(4.0, 2.0, 0.0), Vector(2.0, 3.0, 0.0), Vector(0.0, 0.0, 2.0)).solve(Vector(2.0, 3.0, 1.0))
+    Vector(x=0.0, y=1.0, z=0.5)
+    """
+
+    def solve(self, v: Vector, lever: Vector = ZERO) -> Vector:
+        """Return x with (this matrix) x = v + l; what l is, does not matter to it as it does to `RoundInertia`."""
+        v = v + lever
+        (p, q, r), (_, s, t), (_, _, u) = self.rows
+        by_p, to_p = q / p, r / p
+        s, t, u = s - by_p * q, t - by_p * r, u - to_p * r
+        by_s = t / s
+        y, z = v.y - by_p * v.x, v.z - to_p * v.x
+        z = (z - by_s * y) / (u - by_s * t)
+        y = y / s - by_s * z
+        return Vector(v.x / p - by_p * y - to_p * z, y, z)
+
+
+@frozen_record()
 class RotatedTensor:
     """A symmetric matrix known along other axes: Q M Qᵀ, applied without working out its elements.
 
@@ -419,13 +475,14 @@ class RoundInertia:
     mass: Scalar
     offset: Vector
 
-    def solve(self, v: Vector) -> Vector:
-        """Return x with (this matrix) x = v: (v + ρ m(ρ·v)/J)/(J + mρ²)."""
+    def solve(self, v: Vector, lever: Vector = ZERO) -> Vector:
+        """Return x with (this matrix) x = v + l, l across ρ: (v + ρ m(ρ·v)/J + l)/(J + mρ²)."""
         rho = self.offset
-        return (v + rho * (rho.dot(v) * (self.mass / self.moment))) / (self.moment + self.mass * rho.dot(rho))
+        whole = v + rho * (rho.dot(v) * (self.mass / self.moment)) + lever
+        return whole / (self.moment + self.mass * rho.dot(rho))
 
 
-def inertia_about(J: Matrix, mass: Scalar, offset: Vector) -> Matrix | RoundInertia:
+def inertia_about(J: Matrix, mass: Scalar, offset: Vector) -> DefiniteMatrix | RoundInertia:
     """Return J + m(ρ² 1 − ρ ρᵀ), ready to be solved.
 
     Examples
@@ -435,7 +492,7 @@ def inertia_about(J: Matrix, mass: Scalar, offset: Vector) -> Matrix | RoundIner
     """
     if J.a.x is J.b.y is J.c.z and all(map(is_zero, (J.a.y, J.a.z, J.b.x, J.b.z, J.c.x, J.c.y))):
         return RoundInertia(J.a.x, mass, offset)
-    return J + point_inertia(mass, offset)
+    return DefiniteMatrix(*(J + point_inertia(mass, offset)).rows)
 
 
 @frozen_record()

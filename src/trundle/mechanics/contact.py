@@ -183,8 +183,7 @@ def roll(
     whole = inertia_about(J, m, rho)
     inertial = u_rate - Omega.cross(rho_rate)
     # T2
-    moment = acting.torque - system.body.gyroscopic(Q, Omega) - rho.cross(F) + m * rho.cross(inertial)
-    Omega_rate = whole.solve(moment)
+    Omega_rate = whole.solve(acting.torque - system.body.gyroscopic(Q, Omega), rho.cross(m * inertial - F))
     # T3
     R = m * (inertial - Omega_rate.cross(rho)) - F
     N = m * (n.dot(inertial) - Omega_rate.dot(rho.cross(n))) - n.dot(F)  # ρ×n is 0 for a sphere, and F often along n
@@ -195,7 +194,7 @@ def roll(
         turned = whole.solve(acting.couple)
         couplings.append((turned, turned.cross(rho) * -m))
     if system.support.motion.free:
-        turned = whole.solve(m * rho.cross(lever))
+        turned = whole.solve(ZERO, m * rho.cross(lever))
         couplings.append((turned, m * (lever - turned.cross(rho))))
     amounts = _amounts(system, time, coordinates, contact, acting, R, [reaction for _, reaction in couplings])
     for amount, (turned, reaction) in zip(amounts, couplings, strict=True):

@@ -41,6 +41,7 @@ class Traced:
     event_functions: dict[str, Scalar]  # those of the law, and where the chart ends
     normal: Vector  # n, of length 1, along the chart's axes
     positive: tuple[Scalar, ...] = ()  # what is known to be positive
+    lengths: tuple[tuple[Scalar, Scalar], ...] = ()  # each as it is worked out anywhere, and on the support
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,8 @@ class Chart:
         seen = _unturned(system, law)
         stops = corner_events.all_event_functions(seen, law, time, state, event_parameters)
         p, *_, coordinates = law.split(state)
-        return Traced(law.rates(seen, time, state), stops, normal_at(seen, time, p, coordinates))
+        rates = law.rates(seen, time, state)
+        return Traced(rates, stops, normal_at(seen, time, p, coordinates), lengths=_lengths(seen, time, p, coordinates))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the state with p moved along the normal to φ(p) = 0, by one step of Newton's method, and q/|q|.
@@ -137,8 +139,9 @@ class BodyAxes(Chart):
         turned = q * Quaternion(0.0, *omega)
         moved = [*(axes @ Vector(*rates[:3]))][:k]
         stops = law.event_functions(seen, time, own, event_parameters)
+        found = [*moved, *(0.5 * part for part in turned), *rates[7:]]
         n = normal_at(seen, time, p, tuple(coordinates))
-        return Traced([*moved, *(0.5 * part for part in turned), *rates[7:]], stops, n)
+        return Traced(found, stops, n, lengths=_lengths(seen, time, p, coordinates))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the state with p on the support, and q/|q|."""
@@ -191,7 +194,8 @@ class SupportAxes(Chart):
         moved = [*(Vector(*rates[:3]) - turning.cross(p))][:k]
         turned = Vector(*rates[7:10]) - turning.cross(Omega)
         stops = law.event_functions(seen, time, own, event_parameters)
-        return Traced([*moved, *q.rate(Omega - turning), *turned], stops, normal_at(seen, time, p))
+        found = [*moved, *q.rate(Omega - turning), *turned]
+        return Traced(found, stops, normal_at(seen, time, p), lengths=_lengths(seen, time, p))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
         """Return the state with p on the support, and q/|q|."""
@@ -434,6 +438,14 @@ class _SeenLoad(Load):
             None if normal is None else axes @ normal,
             axes @ motion.support_angular_velocity,
         )
+
+
+def _lengths(
+    system: RollingSystem, time: Scalar, p: Vector, coordinates: Numbers = ()
+) -> tuple[tuple[Scalar, Scalar], ...]:
+    """Return lengths of a place on the support that are known beforehand."""
+    support = system.support.motion.at(time, *coordinates)
+    return system.support.surface.known_lengths(support.local(p))
 
 
 def _nodes(s: Scalar, c: Scalar, sin_psi: Scalar, cos_psi: Scalar) -> Matrix:

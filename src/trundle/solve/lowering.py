@@ -120,6 +120,8 @@ def lower(system: RollingSystem, law: Law, chart: Chart = LAWS_OWN, zeros: Colle
     traced = chart.traced(symbolic, law, time, state, given[count:])
     tidied = chart.tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given), traced.positive)
+    for length, known in traced.lengths:
+        lowering.take_for(length, known)
     lowering.take_for_unit(tuple(traced.normal))
     needed = lowering.needed(traced.event_functions)
     copies = lowering.copies([*traced.rates, *needed.values()])
@@ -127,7 +129,8 @@ def lower(system: RollingSystem, law: Law, chart: Chart = LAWS_OWN, zeros: Colle
     stops = {name: stop for name, stop in stops.items() if lowering.varies(stop)}
     outputs = (*rates, *stops.values())
     parameters = lowering.count_of(outputs)
-    tidy = lowering.new.function([lowering.copy(part) for part in tidied])  # it may want some of its own
+    lowering.forget()  # what holds on the support only
+    tidy = lowering.new.function([lowering.copy(part) for part in tidied])  # it may want parameters of its own
     return Lowered(names, tuple(stops), outputs, lowering.new, parameters, lowering.values(), tidy, chart)
 
 
@@ -188,10 +191,22 @@ class _Lowering:
                     if index in self.positive:
                         self.form.take_for_positive(self.sums[index])
 
+    def take_for(self, part: Any, known: Any) -> None:
+        """Know from now on that a step comes to what is worked out more easily."""
+        if isinstance(part, Node) and not self._is_fixed(part):
+            self._bring(known)
+            self.sums[part.index] = self._as_sum(known)
+
+    def forget(self) -> None:
+        """Know no more than what holds anywhere."""
+        self.form, self.sums = NormalForm(self.new, self._constant), {}
+
     def take_for_unit(self, vector: Sequence[Any]) -> None:
         """Know from now on that a vector has length 1."""
         for part in vector:
             self._bring(part)
+            if isinstance(part, Node) and not self._is_fixed(part):
+                self.sums[part.index] = self.form.factor(self.form.node(self.sums[part.index]))
         self.form.take_for_unit([self._as_sum(part) for part in vector])
 
     def varies(self, part: Any) -> bool:

@@ -35,7 +35,7 @@ class NormalForm:
         self.factors: list[Node] = []  # on the tape
         self.places: dict[int, int] = {}  # of the nodes among the factors
         self.positive: set[int] = set()
-        self.units: list[list[Monomial]] = []  # the squares that add up to 1
+        self.units: list[tuple[Any, list[Monomial]]] = []  # what squares add up to
         self.made: dict[Any, Node] = {}
         self.begun: set[Any] = set()  # on their way there
         # How products and sums came about: they are written so, where nothing simpler has come of them.
@@ -60,18 +60,22 @@ class NormalForm:
         """Know from now on that a vector has length 1."""
         squares = [self._product(part, part, "*") for part in vector if part]
         terms = [term for square in squares for term in square.items()]
-        if len(squares) > 1 and len(terms) == len(squares) and all(_is(coefficient, 1.0) for _, coefficient in terms):
-            self.units.append([monomial for monomial, _ in terms])
+        if (
+            len(squares) > 1
+            and len(terms) == len(squares)
+            and len({_key(coefficient) for _, coefficient in terms}) == 1
+        ):
+            self.units.append((1.0 / terms[0][1], [monomial for monomial, _ in terms]))
 
     def _with_units(self, value: Sum) -> Sum:
-        """Return a sum with x² + y² + z² = 1 where that is known."""
-        for first, *others in self.units:
+        """Return a sum with x² + y² + z² = 1, or another number, where that is known."""
+        for whole, (first, *others) in self.units:
             for monomial, coefficient in list(value.items()):
                 rest = _times(monomial, _inverted(first))
                 terms = [monomial, *(_times(rest, other) for other in others)]
                 if all(term in value and _key(value[term]) == _key(coefficient) for term in terms):
                     left = {term: own for term, own in value.items() if term not in terms}
-                    return self._with_units(_added(left, {rest: coefficient}))
+                    return self._with_units(_added(left, {rest: coefficient * whole}))
         return value
 
     def factor(self, node: Node) -> Sum:

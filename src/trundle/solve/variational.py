@@ -245,7 +245,8 @@ class ChartWithSlopes(Chart):
         found = self.chart.traced(seen, _inner(law), time, unstacked(state, self.own), event_parameters)
         stops = {name: value_of(stop) for name, stop in found.event_functions.items()}
         normal, positive = Vector(*map(value_of, found.normal)), tuple(map(value_of, found.positive))
-        return Traced(stacked(found.rates, self.count), stops, normal, positive)
+        lengths = tuple((value_of(anywhere), value_of(known)) for anywhere, known in found.lengths)
+        return Traced(stacked(found.rates, self.count), stops, normal, positive, lengths)
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the state with its numbers tidied."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from ... import wording
-from ..algebra import Matrix, Vector
+from ..algebra import Matrix, ReducedTensor, Vector
 from ..scalars import Scalar, is_number, namespace
 from .base import CENTRE, RADIUS, Shape, moved, on_third_axis
 
@@ -48,7 +48,7 @@ class Ellipsoid(Shape):
         """Return (A − x xᵀ)/h with x = Aν/h."""
         x, shrunk = self._reached(nu)
         A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
-        return (A - Matrix.outer(x, x)) * shrunk
+        return ReducedTensor.of(A, x, shrunk)
 
     @property
     def reach(self) -> Scalar:

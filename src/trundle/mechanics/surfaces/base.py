@@ -117,6 +117,23 @@ class Surface(Part):
         slope = Vector(*level.gradient)
         return slope * -(level.value / slope.dot(slope))
 
+    def known_lengths(self, p: Vector) -> tuple[tuple[Scalar, Scalar], ...]:  # noqa: ARG002
+        """Return lengths that other methods work out of a point, each with what it is on the surface itself.
+
+        A law whose contact stays there need not work them out.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        tuple of pairs of Scalar
+            The length as it is worked out for any point, and on the surface, m.
+        """
+        return ()
+
     def normal(self, p: Vector) -> Vector:
         """Return n = ∇φ/|∇φ|, from the support into the body.
 

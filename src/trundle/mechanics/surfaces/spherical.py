@@ -68,6 +68,10 @@ class Spherical(Surface):
         square = p.dot(p) + (2.0 * self.sign) * self.radius * p.z
         return self.sign * square / (self._arm(p).norm() + self.radius)
 
+    def known_lengths(self, p: Vector) -> tuple[tuple[Scalar, Scalar], ...]:
+        """Return the distance from the centre, which is the radius."""
+        return ((self._arm(p).norm(), self.radius),)
+
     def normal(self, p: Vector) -> Vector:
         """Return the direction away from the centre outside, towards it inside."""
         arm = self._arm(p)
