@@ -376,6 +376,8 @@ class DefiniteMatrix(Matrix):
         """Return x with (this matrix) x = v + l; what l is, does not matter to it as it does to `RoundInertia`."""
         v = v + lever
         (p, q, r), (_, s, t), (_, _, u) = self.rows
+        if getattr(namespace(p), "exact", False):  # fractions within fractions would be left for SymPy to clear
+            return Matrix.solve(self, v)
         by_p, to_p = q / p, r / p
         s, t, u = s - by_p * q, t - by_p * r, u - to_p * r
         by_s = t / s

@@ -148,12 +148,18 @@ class _Lowering:
         self.positive = {part.index for part in positive}
 
     def copies(self, parts: Sequence[Any]) -> list[Any]:
-        """Return the copies of some steps; the simplest are written first, for the others to make use of."""
+        """Return the copies of some steps; the simplest are written first, for the others to make use of.
+
+        What is known to stay as it is comes last: as an event function it is left out, and wants no parameter.
+        """
         self._multiplied(parts)
-        sizes = [len(self.old.needed([part])) for part in parts]
+        sizes = [(self._stays(part), len(self.old.needed([part]))) for part in parts]
         order = sorted(range(len(parts)), key=sizes.__getitem__)
         made = {i: self.copy(parts[i]) for i in order}
         return [made[i] for i in range(len(parts))]
+
+    def _stays(self, part: Any) -> bool:
+        return isinstance(part, Node) and part.index in self.sums and self.sums[part.index].keys() <= {()}
 
     def _multiplied(self, parts: Sequence[Any]) -> None:
         """Look up which inputs are multiplied as they are: there c·x is no factor of its own."""

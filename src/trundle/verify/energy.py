@@ -104,7 +104,7 @@ class _Account:
     tails: Array  # (panels,) J, that a polynomial does not follow
     sizes: Array  # (panels,) J
     most: float  # of a part of the energy, J
-    blur: float  # of the energy at a panel's ends, by rounding of ρ, from which V is made, J
+    blur: float  # of the energy at a panel's ends, by rounding of ρ, from which V and the centre's place are made, J
 
     @staticmethod
     def of(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> _Account:
@@ -125,7 +125,8 @@ class _Account:
         tails = np.maximum(np.abs(values @ tops), beyond).max(axis=(0, 2)) * half[:, 0]
         works = (values @ w) * half[:, 0]
         ends = there.part(np.arange(times.size).reshape(times.shape)[:, [0, -1]].ravel())
-        moved = float(system.body.mass) * largest(ends.velocity) * largest(ends.angular_velocity)
+        pulled = np.broadcast_to(system.loads_on(ends.motion(system))[0].array(), ends.position.shape)
+        moved = float(system.body.mass) * largest(ends.velocity) * largest(ends.angular_velocity) + largest(pulled)
         blur = moved * blur_of(system, ends)
         return _Account(E[:, -1] - E[:, 0], works, tails, (size @ w) * half[:, 0], float(np.abs(parts).max()), blur)
 
