@@ -195,6 +195,7 @@ def test_a_ball_of_ones_own_on_the_scenario_of_the_bench(visitor: Visitor) -> No
     page = visitor.open(f"#/bench?s={encode(tables)}", drawn=False, cards=False)
     expect(page.locator('[data-bodies="1"]')).to_be_attached()
     page.get_by_role("link", name="Measure").click()
+    page.get_by_role("heading", name="Measure", level=1).wait_for()  # before that nobody takes what is dropped
     t = np.arange(120) / 60
     draw = np.random.default_rng(5).normal(scale=0.05, size=t.size)  # cm
     x = 100 * 5 / 7 * 9.80665 * np.sin(0.04) * t**2 / 2
