@@ -370,3 +370,24 @@ def test_members_in_any_phase_go_in_company(name: str, unrolled: bool, monkeypat
         assert np.array_equal(result.arrays["phase"][i], alone.data.phase.values)
         for quantity in ("position", "velocity", "angular_velocity", "orientation"):
             assert np.abs(result.arrays[quantity][i] - alone.data[quantity].values).max() <= 1e-10, quantity
+
+
+def test_a_long_law_goes_in_fewer_lanes_when_its_loops_are_unrolled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rattleback's, of five members: what each does is what it does alone."""
+    lanes: list[int] = []
+    compile_ = ensemble._compile
+    monkeypatch.setattr(ensemble.integrators, "kept", lambda _, make: make())
+    monkeypatch.setattr(ensemble, "_compile", lambda *given: lanes.append(given[-1]) or compile_(*given))
+    stone = tr.Scenario.load("rattleback")
+    system, start = stone.system(), stone.start_state()
+    moving = ("velocity", "angular_velocity")
+    starts = [
+        replace(start, **{name: tuple(share * part for part in getattr(start, name)) for name in moving})
+        for share in (0.6, -0.8, 1.0, 0.0, 1.3)
+    ]
+    result = many.run_members([system] * len(starts), starts, 0.5, 0.05, unrolled=True)
+    assert lanes == [ensemble.LANES // 2]
+    for i, one in enumerate(starts):
+        alone = tr.simulate(system, one, 0.5, 0.05)
+        for quantity in ("position", "velocity", "angular_velocity", "orientation"):
+            assert np.abs(result.arrays[quantity][i] - alone.data[quantity].values).max() <= 1e-10, quantity

@@ -1,4 +1,4 @@
-"""Many members of one system at once: heyoka's Taylor integrator with eight of them in each vector register.
+"""Many members of one system at once: heyoka's Taylor integrator with several of them in each vector register.
 
 Members share the structure of the system; their numbers and their starts are their own, and so is every step size, so
 that what a member gives does not depend on its company.
@@ -33,13 +33,16 @@ from .lowering import Lowered
 from .samples import AT_ONCE, Array, Event, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
-LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
+LANES = 8  # at most: doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
 _COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
 _STEPS = 300  # at most, between which lanes that are free are taken again
 _FEWEST = 20_000  # steps times `Lowered.cost`, at least: what else is done between two calls takes half of that
 # By `Lowered.cost`: what is longer does not fit the processor's nearest memories when its loops are unrolled.
 _MOST_UNROLLED = 500
+# Of what is longer, unrolled, the registers hold too little: the rest goes to the stack, which is not aligned for eight
+# doubles, so that some processes take a third longer than others. Four take as long in each, and no longer on the mean.
+_MOST_EIGHT = 300
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
 
@@ -254,7 +257,7 @@ def _of_samples(systems: Sequence[RollingSystem], members: NDArray[np.int64]) ->
 
 
 class _Compiled:
-    """Laws of one structure, in the charts of its members, compiled for eight of them."""
+    """Laws of one structure, in the charts of its members, compiled for several of them."""
 
     def __init__(self, given: Sequence[Sequence[float]], tolerance: float, unrolled: bool) -> None:
         zeros = np.equal(np.array(given), 0).all(axis=0)
@@ -280,9 +283,10 @@ class _Compiled:
         """Return one that nobody else uses, and the name under which to put it back."""
         unrolled = self.unrolled and lowered.cost <= _MOST_UNROLLED
         level = integrators.UNROLLED if unrolled else integrators.WITH_CARE
-        name = f"{LANES}-stopping-{key}-{level}"
+        lanes = LANES // 2 if unrolled and lowered.cost > _MOST_EIGHT else LANES
+        name = f"{lanes}-stopping-{key}-{level}"
         with self.lock:
-            made = integrators.kept(name, lambda: _compile(lowered, self.tolerance, unrolled))
+            made = integrators.kept(name, lambda: _compile(lowered, self.tolerance, unrolled, lanes))
             return integrators.idle(name) or copy.copy(made), name
 
 
@@ -480,15 +484,16 @@ class _Lanes:
     def __init__(self, integrator: Any, name: str, lowered: Lowered, law: Law) -> None:
         self.integrator, self.name = integrator, name
         self.lowered, self.pieces = lowered, _Pieces(law, lowered.chart)
-        self.members: list[Member | None] = [None] * LANES
-        self.times = np.zeros(LANES)  # since each leg began; given to the integrator before it steps
+        self.count = integrator.batch_size
+        self.members: list[Member | None] = [None] * self.count
+        self.times = np.zeros(self.count)  # since each leg began; given to the integrator before it steps
         self.pace = math.nan  # about how far a step leads, s
         self.known: dict[int, tuple[float, list[float]]] = {}  # parameters, and from when: many may share one system
 
     def follow(self, waiting: deque[Member]) -> Iterator[tuple[Member | None, ZeroCrossing | Exception | None]]:
         """Yield each member at the end of its stretch, with its stop or what broke it, and in between no member."""
         while True:
-            for lane in range(LANES):
+            for lane in range(self.count):
                 while self.members[lane] is None and waiting:
                     yield from self._enter(lane, waiting.popleft())
             if not any(self.members):
@@ -536,7 +541,7 @@ class _Lanes:
         integrator, before = self.integrator, self.times
         looks, longest = self._looks()
         given: dict[str, Any] = {"max_steps": 1, "max_delta_t": longest} if np.isfinite(longest).any() else {}
-        path = integrator.propagate_grid(_grid(looks), **{"max_steps": self._steps(), **given})[-1]
+        path = integrator.propagate_grid(_grid(looks, self.count), **{"max_steps": self._steps(), **given})[-1]
         self.times, results = integrator.time.copy(), integrator.propagate_res
         steps = sum(int(results[lane][3]) for lane in looks)
         if steps:
@@ -571,14 +576,14 @@ class _Lanes:
 
     def _looks(self) -> tuple[dict[int, _Looks], Array]:
         """Return when to look at each lane, and how long a step of it may be; a lane that is free repeats another."""
-        integrator, longest = self.integrator, np.full(LANES, math.inf)
+        integrator, longest = self.integrator, np.full(self.count, math.inf)
         looks: dict[int, _Looks] = {}
         times = self.times.copy()
         for lane, member in self._on_the_way():
             looks[lane] = member.looks(float(times[lane]))
             longest[lane] = member.longest(member.begin + float(times[lane]))
         one = next(iter(looks))
-        for lane in set(range(LANES)).difference(looks):
+        for lane in set(range(self.count)).difference(looks):
             integrator.state[:, lane], integrator.pars[:, lane] = integrator.state[:, one], integrator.pars[:, one]
             times[lane] = times[one]
         integrator.set_time(times)
@@ -698,13 +703,13 @@ class _Leg:
         return _Looks.of(self, 0, 0.0)
 
 
-def _grid(looks: dict[int, _Looks]) -> Array:
-    """Return the times (looks, LANES) of all lanes, as many for each; one that is free repeats another."""
+def _grid(looks: dict[int, _Looks], lanes: int) -> Array:
+    """Return the times (looks, lanes) of all lanes, as many for each; one that is free repeats another."""
     count = max(look.times.size for look in looks.values())
     for lane, look in looks.items():
         looks[lane] = look.filled_up(count)
     some = next(iter(looks.values()))
-    return np.stack([looks.get(lane, some).times for lane in range(LANES)], axis=1)
+    return np.stack([looks.get(lane, some).times for lane in range(lanes)], axis=1)
 
 
 def _failed(outcome: Any) -> bool:
@@ -726,15 +731,15 @@ def _legs(times: Array, begin: float, first: int) -> list[_Leg]:
     return legs
 
 
-def _compile(lowered: Lowered, tolerance: float, unrolled: bool) -> Any:
+def _compile(lowered: Lowered, tolerance: float, unrolled: bool, lanes: int) -> Any:
     import heyoka
 
     equations, stops = lowered.heyoka()
     falling = heyoka.event_direction.negative
     return heyoka.taylor_adaptive_batch(
         equations,
-        np.zeros((len(equations), LANES)),
-        pars=np.zeros((lowered.parameters, LANES)),
+        np.zeros((len(equations), lanes)),
+        pars=np.zeros((lowered.parameters, lanes)),
         tol=tolerance,
         compact_mode=not unrolled,
         t_events=[heyoka.t_event_batch(stop, direction=falling) for stop in stops],
