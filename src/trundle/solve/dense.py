@@ -11,7 +11,7 @@ import numpy as np
 from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .phases import Integrate, Segment, cut
+from .phases import Follows, Integrate, Segment, cut
 from .samples import Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
@@ -80,7 +80,7 @@ class Dense:
         self.bends = kinks_and_jolts(system, start.time, end)
         self.legs: list[Leg] = []
         self.ends: list[float] = []  # of the legs, s
-        self.follows: dict[int, PhaseStart] = {}
+        self.follows: dict[int, PhaseStart | None] = {}
 
     def __call__(self, times: Array) -> Samples:
         """Return the samples at ascending instants, s, none before the start."""
@@ -153,7 +153,7 @@ class Dense:
         """Return up to when a law may be followed: the next kink, or the end, s."""
         return next((kink.behind for kink in self.bends if kink.behind > now.time), self.end)
 
-    def _remember(self, follows: Callable[[], PhaseStart], *_: Any) -> PhaseStart:
+    def _remember(self, follows: Follows, *_: Any) -> PhaseStart | None:
         """Return what follows the stretch just passed."""
         if self.passed not in self.follows:
             self.follows[self.passed] = follows()

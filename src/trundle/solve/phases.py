@@ -67,6 +67,9 @@ class Segment:
 
 
 Integrate = Callable[[RollingSystem, PhaseStart, Array, float, Progress | None], Iterator[Segment]]
+# What follows a stop: None where the run ends
+Follows = Callable[[], PhaseStart | None]
+Remember = Callable[[Follows, Law, ZeroCrossing], PhaseStart | None]
 Course = Generator[tuple[PhaseStart, Array], tuple[ZeroCrossing | None, int], tuple[Event, ...]]
 
 
@@ -79,7 +82,7 @@ def solve(
     progress: Progress | None = None,
     *,
     in_steps: bool = True,
-    remember: Callable[[Callable[[], PhaseStart], Law, ZeroCrossing], PhaseStart] = lambda follows, *_: follows(),
+    remember: Remember = lambda follows, *_: follows(),
     bends: list[Kink] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
@@ -102,7 +105,8 @@ def solve(
         Whether the method takes steps: none may then lead across a kink of a formula in the time, and slip whose
         direction settles at once is a phase of its own; to a closed form it is slip.
     remember : callable, optional
-        Takes what works out what follows a stop, the law and the stop; returns that, or the same if it is known.
+        Takes what works out what follows a stop (None at the run's end), the law and the stop; returns that, or the
+        same if it is known.
     bends : list of Kink, optional
         The kinks of its formulas, if they are known already.
 
@@ -145,7 +149,7 @@ def course(
     put: Callable[[Samples], None],
     begin: Callable[[RollingSystem, PhaseStart], PhaseStart] = corners.beyond,
     bends: Sequence[Kink] = (),
-    remember: Callable[[Callable[[], PhaseStart], Law, ZeroCrossing], PhaseStart] = lambda follows, *_: follows(),
+    remember: Remember = lambda follows, *_: follows(),
     sampled: Callable[[float], bool] = lambda _: True,
 ) -> Course:
     """Lead a body through its phases: say which law is to be followed over which times, be told how far it held.
@@ -203,13 +207,14 @@ def course(
         if stop is None:
             return tuple(events)
         stop = _on_kink(system, law, stop, bends)
-        if stop.name in ENDS or _spinning_on(system, law, stop):
+        follows = remember(partial(_following, system, law, stop, behind), law, stop)
+        if follows is None:
             if not sampled(stop.time):
                 return (*events, _end(system, stop))
             samples = law.record(system, np.array([stop.time]), stop.state_vector[None])
             put(samples)
             return (*events, _end(system, stop, samples))
-        now = remember(partial(lambda *ended: behind(following_stop(system, *ended)), law, stop), law, stop)
+        now = follows
         events += now.events
         _check_count(system, events)
         if stop.name.startswith(CORNER):
@@ -218,6 +223,14 @@ def course(
         elif not now.events and stop.name != JOLT:
             patience.after(1, stop.time)
         left = _across(system, law, stop, now, left[taken:], put)
+
+
+def _following(
+    system: RollingSystem, law: Law, stop: ZeroCrossing, behind: Callable[[PhaseStart], PhaseStart]
+) -> PhaseStart | None:
+    """Return what follows a stop, None where the run ends."""
+    ends = stop.name in ENDS or _spinning_on(system, law, stop)
+    return None if ends else behind(following_stop(system, law, stop))
 
 
 def _between_kinks(

@@ -8,7 +8,7 @@ derivatives are less by the new rates times dt*/dθ: together, the saltation mat
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -26,7 +26,7 @@ from ...mechanics.system import RollingSystem, State
 from ...solve import corner_events, corners, phases, runge_kutta, taylor, transitions
 from ...solve.contact_state import ContactState
 from ...solve.laws import CONTACT, CORNER, Law, SlippingLaw, state_turning
-from ...solve.phases import Integrate, Segment
+from ...solve.phases import Follows, Integrate, Segment
 from ...solve.samples import RESTING, ROLLING, SLIPPING, Array, Progress, Samples
 from ...solve.transitions import JOLT, PhaseStart, ZeroCrossing
 from ...solve.variational import VariationalLaw, VariedSystem
@@ -208,13 +208,14 @@ class VariationalRun:
                 stop = ZeroCrossing(stop.time, stop.name, stop.state_vector[:size])
             yield Segment(piece.times, piece.states[:, :size], stop)
 
-    def remember(self, follows: Callable[[], PhaseStart], law: Law, stop: ZeroCrossing) -> PhaseStart:
+    def remember(self, follows: Follows, law: Law, stop: ZeroCrossing) -> PhaseStart | None:
         """Return what follows a stop, and keep the same in duals."""
+        found = follows()
         if stop.name.startswith(CORNER):  # there the same goes on
             self._turn_corner(law, stop)
-        else:
+        elif found is not None:
             self.begins = phases.following_stop(self.duals, law, self._crossing(law, stop))
-        return follows()
+        return found
 
     def keep(self, law: Law, piece: Segment) -> None:
         """Take note of states with their derivatives."""
@@ -372,7 +373,7 @@ class _Run(VariationalRun):
         self.stops.append((law, stop.time, stop.state_vector, None))
         self.ending = stop.name
 
-    def remember(self, follows: Callable[[], PhaseStart], law: Law, stop: ZeroCrossing) -> PhaseStart:
+    def remember(self, follows: Follows, law: Law, stop: ZeroCrossing) -> PhaseStart | None:
         """Return what follows a stop, and keep it and its events."""
         found = super().remember(follows, law, stop)
         if self.begins is not None:
