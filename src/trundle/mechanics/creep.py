@@ -48,6 +48,15 @@ class SlipRates:
         N = -self.opening / answer.z
         return self.free.x + answer.x * N, self.free.y + answer.y * N
 
+    def along_and_pressing(self, c: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+        """Return the same, each times a₁·n, and that: no direction makes them infinite."""
+        answer = self.answer(c, s)
+        return (
+            self.free.x * answer.z - answer.x * self.opening,
+            self.free.y * answer.z - answer.y * self.opening,
+            answer.z,
+        )
+
     def direction(self, c: Scalar, s: Scalar) -> Vector:
         """Return ŝ."""
         return self.axes[0] * c + self.axes[1] * s

@@ -270,11 +270,12 @@ class _Course:
     def _beginning(self) -> tuple[float, float]:
         """Return the direction in which slipping begins: the one that its own friction leads along."""
 
-        def growth(c: Any, s: Any) -> tuple[Any, Any]:
+        def growth(c: Any, s: Any) -> tuple[Any, Any, float]:
             first, second, _ = self.M.rows
             return (
                 first.z - self.mu * (first.x * c + first.y * s),
                 second.z - self.mu * (second.x * c + second.y * s),
+                1.0,
             )
 
         found = onset(growth)

@@ -112,7 +112,7 @@ def _growth(system: RollingSystem, at: ContactState, law: Law) -> _Growth | None
     c, s, settling = rates.settled()
     if c > 0 and settling > 0 and _rate(rates, c, s) > 0 and rates.normal_force(c, s) > least:
         return _Growth(rates.direction(c, s), _rate(rates, c, s), settling)
-    for rate, (c, s) in onset(values_of(rates).along):
+    for rate, (c, s) in onset(values_of(rates).along_and_pressing):
         if rates.normal_force(c, s) > least:
             if has_duals(rates):  # a root that was searched for has no slopes: those of Newton's method from there
                 c, s, _ = rates.settled(c, s)
