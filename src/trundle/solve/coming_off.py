@@ -1,4 +1,4 @@
-"""Whether a body comes off where N is all but nothing: at the cone's tip, and where N only touches zero."""
+"""Whether a body comes off, or slips, where N is all but nothing: at the cone's tip, and where N only touches zero."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from ..mechanics.system import RollingSystem
 from . import corner_events
 from .contact_state import ContactState
-from .laws import Law
+from .laws import Law, RollingLaw
 from .tracing import python_law
 
 _AT_HAND = 1e-3  # of the time in which the motion changes
-_CLOSER = 12  # times ten
+_CLOSER, _SOON = 12, 4  # times ten
 _NEARLY = 1e-3  # share of the usual force above which N is no double root's
 _UNASKED = 1e-7  # share of what friction can give when the body is pressed on as usual
 _ROUNDING = 1e-12  # share of the forces at hand, of which a pull of the support may be
@@ -67,6 +67,24 @@ def only_touches(
     look, moment = _looks(system, law, at, numbers, ("lift",), event_parameters)
     least = -_ROUNDING * at.forces(system)
     return all(look(_AT_HAND * moment * 0.1**k)[0] >= least for k in range(_CLOSER))
+
+
+def slips_at_once(system: RollingSystem, at: ContactState, floor: float) -> bool:
+    """Tell whether a body at rest, on which nothing presses, is about to be asked for friction by what begins to move.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(), motion=tr.SpinBy("t**2"), friction=0.3)
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table, gravity=0.0)
+    >>> slips_at_once(system, ContactState.of(system, system.place((0.1, 0.0))), 0.0)
+    True
+    """
+    if not system.support.friction or at.speed > 0:
+        return False
+    law = RollingLaw(weightless=True)
+    look, moment = _looks(system, law, at, law.state_vector(at), ("slip",), (floor,))
+    return all(look(_AT_HAND * moment * 0.1**k)[0] < 0 for k in range(_SOON))
 
 
 def _looks(

@@ -7,12 +7,15 @@ import math
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.duals import value_of
+from ..mechanics.motions import SupportState
 from ..mechanics.nearest import contact_of
 from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
 
 WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
+_UNSEEN = 1e-6  # 1/s: of what leads over |ρ| in no less than days, nothing is seen yet
+_AHEAD = tuple(10.0**k for k in range(-6, 7))  # s
 STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
 
 
@@ -90,12 +93,30 @@ class ContactState:
 
     def scale(self, system: RollingSystem) -> float:
         """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""
-        motion = self.contact.body_motion(system.body.mass, self.state.time, self.V, self.orientation, self.Omega)
+        seen = max(self.speed, math.sqrt(self._pull(system, self.contact.support, 0.0) * value_of(self.arm)))
+        if seen < _UNSEEN * value_of(self.arm):
+            seen = max(seen, self._soon(system))
+        return max(seen, 1e-30)
+
+    def _pull(self, system: RollingSystem, support: SupportState, wait: float) -> float:
+        """Return the greatest acceleration that acts on it here, or on the support, a little later, m/s²."""
+        time, p = self.state.time + wait, self.contact.point
+        motion = self.contact.body_motion(system.body.mass, time, self.V, self.orientation, self.Omega)
         force, torque = system.loads_on(motion)
         pull = (force.norm() + torque.norm() / self.arm) / system.body.mass
-        support, p = self.contact.support, self.contact.point
-        pull = max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())
-        return max(self.speed, math.sqrt(value_of(pull * self.arm)), 1e-30)
+        return float(value_of(max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())))
+
+    def _soon(self, system: RollingSystem) -> float:
+        """Return a speed of a motion yet to begin: |ρ| over the time in which what acts then leads so far, m/s."""
+        arm = float(value_of(self.arm))
+        for wait in _AHEAD:
+            try:
+                then = system.support.motion.at(self.state.time + wait, *self.state.support)
+                if self._pull(system, then, wait) * wait**2 >= arm:
+                    return arm / wait
+            except (ArithmeticError, ValueError):  # a formula has no value so far ahead
+                break
+        return 0.0
 
     def moment(self, system: RollingSystem) -> float:
         """Return a time in which this motion changes, s."""

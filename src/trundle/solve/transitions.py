@@ -17,7 +17,7 @@ from ..mechanics.records import frozen_record
 from ..mechanics.scalars import as_float
 from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
-from .coming_off import lift_at_hand, only_touches
+from .coming_off import lift_at_hand, only_touches, slips_at_once
 from .contact_state import WEIGHTLESS, ContactState, floats, moment
 from .creeping import GROWN, CreepingLaw
 from .laws import (
@@ -476,7 +476,8 @@ def _rolling(system: RollingSystem, at: ContactState, *, slips: bool = False) ->
         return _lifted(system, at)
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
-    if slips or pulled or cone(system, at.contact, R, N, floor).get("slip", 0.0) < 0:
+    gives_way = cone(system, at.contact, R, N, floor).get("slip", 0.0) < 0
+    if slips or pulled or gives_way or (weightless and slips_at_once(system, at, floor)):
         return _giving_way(system, at, RollingLaw())
     law = (RollingWithResistance if system.resisted else RollingLaw)(weightless)
     if law.ends and state_turning(at.contact, at.Omega).norm() == 0:

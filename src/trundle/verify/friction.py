@@ -78,7 +78,10 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
     least, needed, resisted = (math.inf, 0.0), (-1.0, 0.0), (-1.0, 0.0)  # what, and when
     size = 0.0
     for some in (some for part in parts for _, some in part.blocks()):
-        size = max(size, sizes_of(system, some)["contact_force"])
+        sizes = sizes_of(system, some)  # a support that moves under a body at rest asks for forces that cancel
+        size = max(
+            size, sizes["contact_force"], float(system.body.mass) * sizes["velocity"] * sizes["angular_velocity"]
+        )
         touching = some.part((some.phase != FLIGHT) & _directed(system, some))
         if not touching.time.size:
             continue
