@@ -112,8 +112,8 @@ PHASES = (
     Mutant(
         "grip where the cone does not hold",
         FOLLOWING,
-        'floor).get("slip", 0.0) < 0:',
-        'floor).get("slip", 0.0) < -float(R.dot(R)):',
+        'floor).get("slip", 0.0) < 0\n',
+        'floor).get("slip", 0.0) < -float(R.dot(R))\n',
         "incline_too_steep",
     ),
     Mutant(
