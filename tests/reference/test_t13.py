@@ -168,3 +168,41 @@ def test_stumpff_s_functions_by_definition(square: float) -> None:
             exact = stumpff(mpf(square), mpf(float(at)))
         for one, other in zip(ours, exact, strict=True):
             assert abs(float(one[i]) - float(other)) <= EXACT(16, max(1.0, abs(float(other))))
+
+
+PAST = [(1.4, 0.06, (8.0, 0.0)), (-0.7, -0.01, (3.0, -0.02)), (0.2, 1e-3, (8.0, 0.1)), (-3.0, 0.2, (5.0, 0.0))]
+
+
+def past_the_axle(rate: float, aside: float, velocity: tuple[float, float]) -> SphereOnFreePlane:
+    """A ball that passes the axle of a light table, two metres from its start."""
+    return SphereOnFreePlane.of(*on_table(inertia=1e-4, rate=rate, position=(-2.0, aside), velocity=velocity, spin=0.0))
+
+
+@pytest.mark.parametrize(("rate", "aside", "velocity"), PAST)
+def test_before_at_and_long_after_its_nearest_approach(
+    rate: float, aside: float, velocity: tuple[float, float]
+) -> None:
+    """The same with forty digits; on which side of the axle it leaves hangs on the last of ours."""
+    form = past_the_axle(rate, aside, velocity)
+    times = 2.0 / velocity[0] * np.array([0.0, 0.5, 0.99, 1.0, 1.001, 1.01, 1.5, 3.0, 6.0])
+    ours, own = form.motion_and_support_at(times)
+    with mpmath.workdps(40):
+        for i, t in enumerate(times.tolist()):
+            exact, exact_own = form.motion_and_support_at(mpf(t))
+            for vector, expected, size in zip(ours[:2], exact[:2], (2.0, velocity[0]), strict=True):
+                off = max(abs(float(part[i] - there)) for part, there in zip(vector, expected, strict=True))
+                assert off <= 1e-12 * max(size, *(abs(float(part)) for part in expected)), t
+            assert abs(float(own[0][i] - exact_own[0])) <= 1e-12, t
+
+
+@pytest.mark.parametrize(("rate", "aside", "velocity"), PAST)
+def test_on_its_way_out_it_moves_as_smoothly_as_on_its_way_in(
+    rate: float, aside: float, velocity: tuple[float, float]
+) -> None:
+    """Within microseconds a place is off a cubic by the rounding of itself, not of what cancels in it."""
+    form, count = past_the_axle(rate, aside, velocity), np.arange(60)
+    for share in (0.1, 1.5, 3.0, 6.0):
+        place = form.motion_at(2.0 / velocity[0] * share + 1e-7 * count)[0]
+        for part in (place.x, place.y):
+            off = part - np.polyval(np.polyfit(count / 60, part, 3), count / 60)
+            assert np.abs(off).max() <= 40 * np.spacing(np.hypot(place.x, place.y).max()), share

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -206,6 +207,7 @@ class _Orbit:
 
     share: Any  # κ̂
     pull: Any  # mκ̂
+    axle: Any  # I_t
     zeta: Any  # ζ₀
     first: Any  # ζ₀′ = w₀ζ̇₀
     M: Any
@@ -222,13 +224,14 @@ class _Orbit:
         pull = number(form.mass) * share
         zeta, V = (number(x) + 1j * number(y) for x, y in (form.position, form.velocity))
         M = V - 1j * (share * omega) * zeta
-        square = number(form.axle_inertia) + pull * (zeta.real**2 + zeta.imag**2)
+        axle = number(form.axle_inertia)
+        square = axle + pull * (zeta.real**2 + zeta.imag**2)
         w = square**0.5 if number is float else _root(square)
         h = omega * w
         c, size = share * h, M.real**2 + M.imag**2
         first = w * V
         along = (zeta.conjugate() * M).real, (first.conjugate() * M).real
-        return _Orbit(share, pull, zeta, first, M, w, h, c, c * c - pull * size, along)
+        return _Orbit(share, pull, axle, zeta, first, M, w, h, c, c * c - pull * size, along)
 
     @property
     def turn(self) -> Any:
@@ -252,11 +255,47 @@ class _Orbit:
         X, X_rate = self.along
         return self.w + self.pull * (X * s1 + X_rate * c2)
 
+    @cached_property
+    def _vertex(self) -> tuple[float, float, _Orbit] | None:
+        """When a hyperbola is nearest to the axle, τ there, and its orbit from there on; None where it only leaves.
+
+        Written from its start, a ball on its way out would be the small difference of what grows as e^|ν|τ.
+        """
+        X, X_rate = self.along
+        if not self.square < 0 or not X < 0 or math.isinf(X_rate):
+            return None
+        nu = math.sqrt(-self.square)
+        if not X_rate + nu * X > 0:
+            return None
+        tau = 0.5 * math.log((X_rate - nu * X) / (X_rate + nu * X)) / nu
+        t, _ = self._time(tau)
+        _, s1, c2, _ = stumpff(self.square, np.float64(tau))
+        zeta = self.zeta + self.first * s1 + self._second * c2
+        w = math.sqrt(self.axle + self.pull * (zeta.real**2 + zeta.imag**2))
+        first = 1j * self.c * zeta + self.M * w
+        along = 0.0, (first.conjugate() * self.M).real
+        return float(t), tau, replace(self, zeta=zeta, first=first, w=w, along=along)
+
+    @property
+    def _second(self) -> Any:
+        """ζ″ at the start."""
+        return 1j * self.c * self.first + self.M * (self.pull * self.along[0])
+
     def at(self, t: Any) -> tuple[Any, Any, Any, Any, Any]:
         """Return ζ, ζ̇, ζ̈, ω and the table's angle."""
+        if _is_mpmath(t) or self._vertex is None:
+            return self._from_start(t)
+        t = np.asarray(t, dtype=float)
+        passed, tau, onward = self._vertex
+        before, behind = self._from_start(np.minimum(t, passed)), onward._from_start(np.maximum(t - passed, 0.0))
+        behind = (*behind[:4], behind[4] + self.h * tau)
+        return tuple(np.where(t < passed, *parts) for parts in zip(before, behind, strict=True))
+
+    def _from_start(self, t: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """Return the same, all of it as it grows from the start."""
         rounds: Any = 0.0
         if _is_mpmath(t):
-            rough = _Orbit(*(_rounded(part) for part in vars(self).values()))
+            rough = _Orbit(*(_rounded(getattr(self, field.name)) for field in fields(self)))
             tau = precisely(self._time, t, float(rough.found(np.asarray(float(t)))))
         else:
             t = np.asarray(t, dtype=float)
@@ -265,8 +304,7 @@ class _Orbit:
         cosine, s1, c2, _ = stumpff(self.square, tau)
         w = self._rate(s1, c2)
         X = self.along[0] * cosine + self.along[1] * s1
-        first = self.first
-        second = 1j * self.c * first + self.M * (self.pull * self.along[0])
+        first, second = self.first, self._second
         zeta, V = self.zeta + first * s1 + second * c2, (first * cosine + second * s1) / w
         omega = self.h / w
         A = 1j * self.share * (omega * V - omega * self.pull * X / (w * w) * zeta)
