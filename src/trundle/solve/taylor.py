@@ -40,10 +40,11 @@ _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 _FIRST_LOOK, _NEXT_LOOK = 100, 25  # steps: to see whether they grow, and whether an event function still falls
 _GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
-# Steps to come for each unit of it, and the share of those to come that are to be done first: where slip begins steps
-# are a thousand times shorter than they will be; to unroll a long law takes a minute, and where steps shorten without
-# end patience is at its end before.
-_WORTH_UNROLLING, _DONE = 4000.0, {WITH_CARE: 0.01, UNROLLED: 0.1}
+# Steps to come for each unit of it, and the share of those to come that are to be done first: to unroll a long law
+# takes a minute, and where slip begins steps are a thousand times shorter than they will be.
+_WORTH_UNROLLING, _DONE = 4000.0, 0.01
+# Times as short as on the mean: where steps go on getting shorter they seem to be ever more, and come to an end first.
+_SHORTENING = 2.0
 _SHORT_LAW = 100  # by `Lowered.cost`
 _SLOWER = {IN_HASTE: 3.0, WITH_CARE: 1.0, UNROLLED: 0.5}  # times, than what is made with care
 _OF_ANY_STEP = 3e4  # products that take as long as what is not the law
@@ -136,6 +137,7 @@ class _Effort:
     tolerance: float = TOLERANCE  # of a step
     level: int = IN_HASTE
     steps: int = 0
+    gone: float = 0.0  # s, in them
     pace: float = 0.0  # 1/s, of the last of them
     pause: int = _FIRST_LOOK  # steps to the next look
 
@@ -160,7 +162,7 @@ class _Effort:
 
     def after(self, steps: int, lasted: float) -> None:
         """Take account of steps."""
-        self.steps += steps
+        self.steps, self.gone = self.steps + steps, self.gone + lasted
         self.pace = steps / lasted if lasted > 0 else 0.0
 
     def look(self, left: float, holds: Callable[[], float] = lambda: math.inf, *, growing: bool = False) -> None:
@@ -172,10 +174,11 @@ class _Effort:
         self.pause = _FIRST_LOOK if growing else _NEXT_LOOK
         coming, most = self.pace * left, _PATIENCE["steps"] * _OF_A_SHORT_STEP / self.products(UNROLLED)
         careful, worth = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost, _WORTH_UNROLLING * self.cost
-        if min(coming, most) > worth and self.steps > _DONE[UNROLLED] * worth:
+        shortening = self.pace * self.gone > _SHORTENING * self.steps
+        if min(coming, most) > worth and self.steps > _DONE * worth and not shortening:
             self.level = UNROLLED
         elif self.level == IN_HASTE:
-            seen = not growing and careful < coming <= min(most, self.steps / _DONE[WITH_CARE])
+            seen = not growing and careful < coming <= min(most, self.steps / _DONE)
             if self.steps > careful or (seen and self.pace * holds() > careful):
                 self.level = WITH_CARE
 
