@@ -221,3 +221,32 @@ def test_far_away_it_turns_as_far_as_it_rolls(body: tr.Body, tilt: float, distan
     assert np.abs(run.samples.orientation - wanted).max() <= EXACT(8, turned.max())
     failures = run.card().failures
     assert not failures, failures
+
+
+AXLE = tr.Support(tr.Plane(), motion=tr.FreeAxle(0.003))
+
+
+@pytest.mark.parametrize(
+    ("body", "start"),
+    [
+        (tr.Body.half_cylinder(0.045, 0.2), {"position": (-0.4, 0.0), "velocity": (0.1, 0.05)}),
+        (tr.Body.half_cylinder(0.045, 0.2), {"position": (0.0, 0.3), "velocity": (-0.1, 0.0)}),
+        (LOG, {"position": (0.3, 0.1), "velocity": (0.1, 0.0)}),
+    ],
+)
+def test_what_turns_a_free_table_under_itself_is_refused(body: tr.Body, start: dict[str, Any]) -> None:
+    """What pushes along its way aside of the axle turns the table, and the table turns it: also where that is later."""
+    system = tr.RollingSystem(body, AXLE, loads=(tr.Force((0.1, 0.0, 0.0)),) if body is LOG else ())
+    with pytest.raises(InvalidValueError, match="must roll straight"):
+        tr.simulate(system, system.place(**start), 1.0, 0.1)
+
+
+@pytest.mark.parametrize("body", [LOG, tr.Body.half_cylinder(0.045, 0.2)])
+@pytest.mark.parametrize("velocity", [(0.1, 0.0), (-0.2, 0.0)])
+def test_what_rolls_over_the_axle_of_a_free_table_leaves_it_at_rest(
+    body: tr.Body, velocity: tuple[float, float]
+) -> None:
+    system = tr.RollingSystem(body, AXLE)
+    run = tr.simulate(system, system.place(position=(-0.01, 0.0), velocity=velocity), 1.0, 0.1)
+    assert np.abs(run.data.support_rate.values).max() < 1e-12
+    assert run.card().passed

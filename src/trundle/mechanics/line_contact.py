@@ -100,18 +100,25 @@ def _check_aside(system: RollingSystem, start: State, contact: Contact, axis: Ve
         float(abs(Omega.dot(axis))), math.sqrt(pull / float(arm.norm())), float(contact.support.angular_velocity.norm())
     )
     way = n.cross(axis) * (_FURTHER * float(arm.norm()))
-    tried = [(start.time, 0.0, Omega)]
+    tried = [(start.time, 0.0, Omega, start.support)]
     tried += [
-        (start.time + share * (until - start.time), side, axis * (side * rate))
+        (start.time + share * (until - start.time), side, axis * (side * rate), start.support)
         for share in (_INSTANTS if until > start.time else (0.0,))
         for side in (1.0, -1.0)
     ]
-    for time, side, turning in tried:
+    for time, side, turning, support in tried:
+        half = -0.5 * _FURTHER * side  # of the angle by which it has rolled there
+        turned = Quaternion(math.cos(half), *(axis * math.sin(half))) * q
         try:
-            there = closest_contact(system, time, Vector(*start.position) + way * side, q, start.support)
-            now = roll(system, time, there.point, q, turning, start.support)
+            there = closest_contact(system, time, Vector(*start.position) + way * side, turned, support)
+            now = roll(system, time, there.point, turned, turning, support)
         except (SolverError, ArithmeticError, ValueError):  # the surface does not reach there
             continue
+        if system.support.motion.free and support == start.support:
+            angle, axle_rate = support
+            _, growth = system.support.motion.coordinate_rates(time, support, now.axle_moment)
+            if abs(growth) > TOLERANCE * rate * rate:  # it will turn otherwise
+                tried.append((time, side, turning, (angle, axle_rate + rate)))
         size = max(float(now.angular_acceleration.norm()), rate * rate)
         if _across(now.angular_acceleration, axis) > TOLERANCE * size or abs(axis.dot(there.normal)) > TOLERANCE:
             when = "" if time == start.time else f" (at t = {time:.4g} s)"
