@@ -106,15 +106,18 @@ def _check_aside(system: RollingSystem, start: State, contact: Contact, axis: Ve
         for share in (_INSTANTS if until > start.time else (0.0,))
         for side in (1.0, -1.0)
     ]
+    moves = bool(Omega.norm() > 0)
     for time, side, turning, support in tried:
-        half = -0.5 * _FURTHER * side  # of the angle by which it has rolled there
+        half = -0.5 * _FURTHER * side * moves  # of the angle by which it has rolled there
         turned = Quaternion(math.cos(half), *(axis * math.sin(half))) * q
         try:
             there = closest_contact(system, time, Vector(*start.position) + way * side, turned, support)
             now = roll(system, time, there.point, turned, turning, support)
         except (SolverError, ArithmeticError, ValueError):  # the surface does not reach there
             continue
-        if system.support.motion.free and support == start.support:
+        if side == 0 and now.angular_acceleration.norm() > TOLERANCE * rate * rate:
+            moves = True  # else it lies still where it is
+        if moves and system.support.motion.free and support == start.support:
             angle, axle_rate = support
             _, growth = system.support.motion.coordinate_rates(time, support, now.axle_moment)
             if abs(growth) > TOLERANCE * rate * rate:  # it will turn otherwise
