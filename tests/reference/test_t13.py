@@ -182,7 +182,7 @@ def past_the_axle(rate: float, aside: float, velocity: tuple[float, float]) -> S
 def test_before_at_and_long_after_its_nearest_approach(
     rate: float, aside: float, velocity: tuple[float, float]
 ) -> None:
-    """The same with forty digits; on which side of the axle it leaves hangs on the last of ours."""
+    """The same with forty digits: the turn at the axle makes a rounding of the start a hundred times larger."""
     form = past_the_axle(rate, aside, velocity)
     times = 2.0 / velocity[0] * np.array([0.0, 0.5, 0.99, 1.0, 1.001, 1.01, 1.5, 3.0, 6.0])
     ours, own = form.motion_and_support_at(times)

@@ -107,7 +107,7 @@ def _check_aside(system: RollingSystem, start: State, contact: Contact, axis: Ve
         for side in (1.0, -1.0)
     ]
     moves = bool(Omega.norm() > 0)
-    for time, side, turning, support in tried:
+    for time, side, turning, support in tried:  # to which states of a faster axle are added on the way
         half = -0.5 * _FURTHER * side * moves  # of the angle by which it has rolled there
         turned = Quaternion(math.cos(half), *(axis * math.sin(half))) * q
         try:

@@ -18,7 +18,8 @@ def onset(growth: Callable[[Any, Any], tuple[Any, Any, Any]]) -> list[tuple[floa
     ----------
     growth : callable
         The rate of change of s, two components, for friction against (cos β, sin β), given by cos β and sin β, numbers
-        or arrays: both times a third number that it returns, too. That may vanish, where friction jams the contact.
+        or arrays. Both are multiplied by a third number, which it returns with them, and which may vanish where
+        friction jams the contact.
 
     Returns
     -------
