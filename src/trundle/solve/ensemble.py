@@ -43,6 +43,7 @@ _MOST_UNROLLED = 500
 # Of what is longer, unrolled, the registers hold too little: the rest goes to the stack, which is not aligned for eight
 # doubles, so that some processes take a third longer than others. Four take as long in each, and no longer on the mean.
 _MOST_EIGHT = 300
+_NARROW = 1e-6  # share of a leg, of a gap in which to look more often
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
 
@@ -58,10 +59,10 @@ class Block:
 
 @dataclass(frozen=True)
 class Piece:
-    """States (rows, size, members), in a chart, of some members at some of the instants, to be completed."""
+    """States (rows, size, members), in a chart, of some members at successive instants, to be completed."""
 
     members: Sequence[int]
-    rows: slice
+    first: int  # row
     path: Array
 
     @property
@@ -238,8 +239,12 @@ def completed(
     law: Law, systems: Sequence[RollingSystem], times: Array, pieces: Sequence[Piece], chart: Chart = LAWS_OWN
 ) -> Block:
     """Complete the states of some members at some of the instants, all pieces at once."""
-    members = np.concatenate([np.tile(np.asarray(piece.members), len(piece.path)) for piece in pieces])
-    rows = np.concatenate([np.repeat(np.arange(times.size)[piece.rows], len(piece.members)) for piece in pieces])
+    counts = np.array([len(piece.members) for piece in pieces])
+    sizes = np.array([piece.size for piece in pieces])
+    within = np.arange(sizes.sum()) - np.repeat(sizes.cumsum() - sizes, sizes)  # which sample of its piece
+    row, which = np.divmod(within, np.repeat(counts, sizes))
+    members = np.concatenate([piece.members for piece in pieces])[np.repeat(counts.cumsum() - counts, sizes) + which]
+    rows = np.repeat([piece.first for piece in pieces], sizes) + row
     flat = np.concatenate([piece.path.transpose(0, 2, 1).reshape(-1, piece.path.shape[1]) for piece in pieces])
     system = _of_samples(systems, members)
     states = taylor.to_law(chart, system, times[rows], flat)
@@ -512,7 +517,7 @@ class _Lanes:
                     return
                 row, count = member.first + member.reached, member.instants.size  # the instant at which it begins
                 path = np.repeat(self.integrator.state[None, :, [lane]], count, axis=0)
-                self.pieces.add(Piece([member.index], slice(row, row + count), path))
+                self.pieces.add(Piece([member.index], row, path))
                 member.reached += count
             yield member, None
         except (ArithmeticError, ValueError) as error:
@@ -621,23 +626,18 @@ class _Lanes:
 
     def _sample(self, path: Array, looks: Mapping[int, _Looks], stops: Mapping[int, ZeroCrossing | None]) -> None:
         """Keep the states at the instants that have been passed."""
-        alike: dict[tuple[int, bytes], list[int]] = {}  # lanes of which the same samples are at the same places
         for lane, member in self._on_the_way():
             stop, done = stops[lane], member.reached - member.leg_from
             if stop is not None:
-                upto = int(np.searchsorted(member.instants, stop.time))
+                upto = int(member.instants.searchsorted(stop.time))
             elif self.times[lane] == member.end - member.begin:
                 upto = member.instants.size
             else:
                 upto = int(member.leg.since.searchsorted(self.times[lane], "right"))
             if upto > done:
-                places = looks[lane].places[: upto - done]
-                alike.setdefault((member.first + member.reached, places.tobytes()), []).append(lane)
+                places, row = looks[lane].places[: upto - done], member.first + member.reached
+                self.pieces.add(Piece([member.index], row, path[places, :, lane, None]))
                 member.reached += upto - done
-        for (row, packed), lanes in alike.items():
-            places = np.frombuffer(packed, dtype=np.int64)
-            members = [member.index for lane, member in self._on_the_way() if lane in lanes]
-            self.pieces.add(Piece(members, slice(row, row + places.size), path[places][:, :, lanes]))
 
     def _wait(self, lane: int, member: Member, steps: int) -> Iterator[tuple[Member, Exception]]:
         """Let a member go on in its leg, unless it hardly gets on."""
@@ -668,15 +668,18 @@ class _Looks:
         return _Looks(times, places[1:])
 
     def filled_up(self, count: int) -> _Looks:
-        """Return so many: more in the widest gap."""
+        """Return so many: more before the first that is ahead, or in the widest gap if that one is too narrow."""
         more = count - self.times.size
         if more == 0:
             return self
-        gaps = self.times[1:] - self.times[:-1]
-        after = int(gaps.argmax()) + 1
-        between = self.times[after - 1] + gaps[after - 1] * (np.arange(1, more + 1) / (more + 1))
-        times = np.concatenate([self.times[:after], between, self.times[after:]])
-        return _Looks(times, self.places + more * (self.places >= after))
+        times, after = self.times, 1
+        if not times[1] - times[0] > _NARROW * times[-1]:
+            after += int(np.argmax(times[1:] - times[:-1]))
+        filled = np.empty(count)
+        filled[:after], filled[after + more :] = times[:after], times[after:]
+        begin, end = float(times[after - 1]), float(times[after])
+        filled[after : after + more] = begin + np.arange(1, more + 1) * ((end - begin) / (more + 1))
+        return _Looks(filled, self.places + more * (self.places >= after))
 
 
 @dataclass(frozen=True)

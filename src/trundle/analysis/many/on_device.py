@@ -83,7 +83,7 @@ class OnDevice:
             kept = [member for member, sound in zip(some, good.tolist(), strict=True) if sound]
             if kept:
                 states = path[:, : len(some)][:, good].swapaxes(1, 2)
-                piece = Piece(kept, slice(0, self.times.size), states)
+                piece = Piece(kept, 0, states)
                 done(completed(RollingLaw(), self.systems, self.times, [piece]))
             errors.append(error)
         return left, np.concatenate(errors)
