@@ -136,6 +136,30 @@ def test_a_ball_in_a_vertical_pipe_bobs(k: float) -> None:
     assert np.abs(f[:, :2]).max() <= SOLVER(1 + radians(at), 1e-15, N.max())
 
 
+@pytest.mark.parametrize("rate", [0.0, math.pi, -4.0])
+def test_what_rounding_leaves_of_q_is_not_turned_into_more_by_thousands_of_radians(rate: float) -> None:
+    a, body = 0.005, tr.Body(0.64, tr.Principal(0.002, 0.0032, 0.0048), Sphere(0.005))
+    system = tr.RollingSystem(body, tr.Support(tr.Plane(), motion=tr.Spin(rate)))
+    start = system.place((-1.3, 0.01), (0.0, 3.0), spin=500.0, orientation=tilted((0.6, 0.8, 0.0), 1.0))
+    at = taylor.solve(system, start, TIMES)
+    assert radians(at) > 6000
+    own = np.einsum("nij,nj->ni", space_inertia(body, at), at.angular_velocity)
+    rho = np.array([0.0, 0.0, -a])
+    assert drift((own, -body.mass * np.cross(rho, at.velocity))) <= EXACT(1000, 1.0)
+
+
+@pytest.mark.parametrize("around", [20_000.0, -15_000.0])
+def test_a_ball_in_a_pipe_hardly_wider_bobs_as_evenly_after_ten_thousand_rounds(around: float) -> None:
+    # What rounding leaves of its distance from the axis is a hundred times as much of the circle of its centre.
+    a, b, k, up = 0.01, 0.01014, 2 / 5, 0.4
+    system = tr.RollingSystem(tr.Body.sphere(a, 0.03, k), tr.Support(tr.Cylinder(b)))
+    times = np.linspace(0.0, 3.0, 301)
+    at = taylor.solve(system, pipe_start(a, b, around, up, 0.0), times)
+    nu = around * math.sqrt(k / (1 + k))
+    z = up / nu * np.sin(nu * times) - G / (1 + k) / nu**2 * (1 - np.cos(nu * times))
+    assert np.abs(at.position[:, 2] - z).max() <= EXACT(200, abs(around) * 3.0 * up / abs(nu))
+
+
 def test_the_weighted_ball_swings_like_a_pendulum() -> None:
     """Rocking about its lowest place in a plane: ½[I + m(a² + c² − 2ac cos θ)]θ̇² − mgc cos θ is the energy."""
     a, c, m, I = 0.25, 0.1, 1.5, 0.03

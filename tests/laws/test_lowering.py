@@ -12,9 +12,10 @@ import pytest
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.mechanics.algebra import Matrix, Quaternion, Vector
 from trundle.mechanics.parameters import numbers
 from trundle.solve import integrators, taylor
+from trundle.solve.charts import LineOfNodes, SupportAxes, charts
 from trundle.solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, SlippingLaw
 from trundle.solve.lowering import lower
 
@@ -176,3 +177,28 @@ def test_tidying_puts_the_contact_on_the_support_and_leaves_the_rest(name: str, 
     assert abs(math.hypot(*tidied[3:7]) - 1) <= EXACT(2, 1.0)
     assert tidied[7:] == right[7:]
     assert np.abs(np.array(tidied[:3]) - off[:3]).max() <= abs(level(off[:3])) * 1.01  # along the normal, no further
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("phase", LAWS)
+def test_of_what_p_and_q_are_off_the_law_sees_the_square(name: str, phase: str) -> None:
+    # Of |q| that is off by ε, the law of an egg is off by as much: over a thousand radians, a thousand times ε.
+    system, law, time, off_by = SYSTEMS[name], LAWS[phase], 1.25, 1e-5
+    support, surface = system.support.motion.at(time), system.support.surface
+    for chart in charts(system, law):
+        if isinstance(chart, LineOfNodes):  # it has neither
+            continue
+        ready = lower(system, law, chart)
+        right = np.array(chart.of_law(system, time, numbers_of(law, system, time)))
+        off, k = right.copy(), ready.names.index("q_w")
+        axes = Matrix.identity() if isinstance(chart, SupportAxes) else support.rotation
+        if k == 3 and not surface.flat:  # a plane is the same over itself
+            own = axes.transpose @ (Vector(*right[:3]) - support.origin)
+            off[:3] += off_by * (axes @ surface.normal(own)).array()
+        off[k : k + 4] *= 1 + off_by
+        of = ready.tape.function(ready.outputs)
+        given = ready.values([*numbers(system), *[0.5] * law.event_parameters], time)
+        wanted, found = (np.array(of([0.0, *state, *given])) for state in (right, off))
+        found[k : k + 4] /= 1 + off_by
+        moving = slice(0, len(ready.names))  # of the event functions some say how far p is from an end
+        assert np.abs(found - wanted)[moving].max() <= 200 * off_by**2 * max(1.0, np.abs(wanted).max()), chart

@@ -69,9 +69,12 @@ class Chart:
     ) -> Traced:
         """Return the rates of its numbers, and the event functions."""
         seen = _unturned(system, law)
-        stops = corner_events.all_event_functions(seen, law, time, state, event_parameters)
-        p, *_, coordinates = law.split(state)
-        rates = law.rates(seen, time, state)
+        place, q, _, _, coordinates = law.split(state)
+        p, unit = _corrected(seen, time, place, q, coordinates)
+        near = [*p, *unit, *state[7:]]
+        turned, rates = law.rates(seen, time, [*p, *q, *state[7:]])[3:7], law.rates(seen, time, near)
+        rates[3:7] = turned  # of which the law of a ball needs no more
+        stops = corner_events.all_event_functions(seen, law, time, near, event_parameters)
         return Traced(rates, stops, normal_at(seen, time, p, coordinates), lengths=_lengths(seen, time, p, coordinates))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
@@ -131,9 +134,11 @@ class BodyAxes(Chart):
         """Return the rates by the law along the axes of the body."""
         k = self._along
         q, omega, coordinates = Quaternion(*state[k : k + 4]), state[k + 4 : k + 7], state[k + 7 :]
-        axes = q.matrix()
-        seen = along_axes(system, axes, q)
-        p = axes.transpose @ self._place(system, time, state, coordinates)
+        place = self._place(system, time, state, coordinates)
+        place, unit = _corrected(system, time, place, q, tuple(coordinates))
+        axes = unit.matrix()
+        seen = along_axes(system, axes, unit)
+        p = axes.transpose @ place
         own = [*p, *_UPRIGHT, *omega, *coordinates]
         rates = law.rates(seen, time, own)
         turned = q * Quaternion(0.0, *omega)
@@ -187,9 +192,10 @@ class SupportAxes(Chart):
         xp = namespace(half)
         q, Omega = Quaternion(*state[k : k + 4]), Vector(*state[k + 4 :])
         p = self._place(system, time, state, ())
-        seen = along_axes(system, now.rotation, Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half)) * q)
+        p, unit = p + system.support.surface.correction(p), _nearly_unit(q)
+        seen = along_axes(system, now.rotation, Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half)) * unit)
         seen = replace(seen, support=replace(seen.support, motion=_SeenMotion(motion, now.rotation, True)))
-        own = [*p, *q, *Omega]
+        own = [*p, *unit, *Omega]
         rates, turning = law.rates(seen, time, own), now.angular_velocity
         moved = [*(Vector(*rates[:3]) - turning.cross(p))][:k]
         turned = Vector(*rates[7:10]) - turning.cross(Omega)
@@ -325,6 +331,23 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     if flat and system.body.axisymmetric:
         found.append(LineOfNodes())
     return tuple(found)
+
+
+def _corrected(
+    system: RollingSystem, time: Scalar, p: Vector, q: Quaternion, coordinates: tuple[Scalar, ...]
+) -> tuple[Vector, Quaternion]:
+    """Return p on the support and q of length 1, given both but for what rounding leaves, to the square of that.
+
+    Steps do not mend it, and the law of a state that is off by ε turns the whole motion by about ε for each radian.
+    """
+    support = system.support.motion.at(time, *coordinates)
+    return p + support.rotation @ system.support.surface.correction(support.local(p)), _nearly_unit(q)
+
+
+def _nearly_unit(q: Quaternion) -> Quaternion:
+    """Return q/|q|, without a root or a division, to the square of what |q| is off."""
+    share = 1.5 - 0.5 * sum((part * part for part in q), 0.0)
+    return Quaternion(*(part * share for part in q))
 
 
 def _unturned(system: RollingSystem, law: Law) -> RollingSystem:

@@ -117,6 +117,21 @@ class Surface(Part):
         slope = Vector(*level.gradient)
         return slope * -(level.value / slope.dot(slope))
 
+    def correction(self, p: Vector) -> Vector:
+        """Return the step to where normal and shape operator are to be asked for, given a point all but on it, m.
+
+        Parameters
+        ----------
+        p : Vector
+            A point off the surface by rounding, in the support's own frame, m.
+
+        Returns
+        -------
+        Vector
+            To be added to p; as a rule the step onto the surface.
+        """
+        return self.step_onto(p)
+
     def known_lengths(self, p: Vector) -> tuple[tuple[Scalar, Scalar], ...]:  # noqa: ARG002
         """Return lengths that other methods work out of a point, each with what it is on the surface itself.
 

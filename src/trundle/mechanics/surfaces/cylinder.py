@@ -78,6 +78,12 @@ class Cylinder(Surface):
         """Return the distance from the wall, m."""
         return (from_axis(p)[1] - self.radius) * self.sign
 
+    def correction(self, p: Vector) -> Vector:
+        """Return (b² − d²)/(2 b²) times the way from the axis."""
+        square = self.radius * self.radius
+        share = 0.5 - 0.5 * (p.x * p.x + p.y * p.y) / square
+        return Vector(p.x * share, p.y * share, 0.0)
+
     def normal(self, p: Vector) -> Vector:
         """Return the direction away from the axis outside, towards it inside."""
         return from_axis(p)[0] * self.sign

@@ -64,9 +64,15 @@ class Spherical(Surface):
 
     def level(self, p: Vector) -> Scalar:
         """Return the distance from the sphere, m."""
-        # ±(d − b) as ±(d² − b²)/(d + b), which near the surface keeps the digits that the difference would lose.
-        square = p.dot(p) + (2.0 * self.sign) * self.radius * p.z
-        return self.sign * square / (self._arm(p).norm() + self.radius)
+        return self.sign * self._over(p) / (self._arm(p).norm() + self.radius)
+
+    def correction(self, p: Vector) -> Vector:
+        """Return (b² − d²)/(2 b²) times the way from the centre."""
+        return self._arm(p) * (-0.5 * self._over(p) / (self.radius * self.radius))
+
+    def _over(self, p: Vector) -> Scalar:
+        """Return d² − b², which keeps the digits near the surface that the difference would lose."""
+        return p.dot(p) + (2.0 * self.sign) * self.radius * p.z
 
     def known_lengths(self, p: Vector) -> tuple[tuple[Scalar, Scalar], ...]:
         """Return the distance from the centre, which is the radius."""
