@@ -87,5 +87,6 @@ def test_another_is_chaotic_and_all_but_keeps_its_volume() -> None:
     assert found.passed
     exponents = np.array(found.exponents)
     assert exponents[0] > 0.2
-    assert abs(exponents[0] + exponents[-1]) < 0.3 * exponents[0]
+    # A strange attractor has 1.3 to 1.7 here. Over 300 s chance has up to 0.4, by starts 1e-9 apart; over 1000 s 0.02.
+    assert abs(exponents[0] + exponents[-1]) < 0.6 * exponents[0]
     assert abs(exponents[-2]) < 0.2 * exponents[0]
