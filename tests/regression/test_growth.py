@@ -13,7 +13,7 @@ import trundle as tr
 from trundle.solve import runge_kutta
 from trundle.solve.dense import Dense
 from trundle.solve.methods import Method
-from trundle.verify.bounds import A_STEP, bound_of, sizes_of, turned_in
+from trundle.verify.bounds import A_STEP, bound_of, own_sizes, sizes_of, turned_in
 from trundle.verify.compared import Compared
 from trundle.verify.growth import MOST, Growth, growth
 
@@ -120,3 +120,17 @@ def test_what_runs_away_grows_as_theory_says(rate: float) -> None:
     assert found.until == 1.5
     sooner, later = np.diff(found.at(np.array([1.0, 1.25, 1.5])))  # less what does not grow
     assert later / sooner == pytest.approx(math.exp(rate * 0.25), rel=0.02)
+
+
+@pytest.mark.parametrize("sideways", [1e-6, -1e-6])
+def test_what_a_small_change_does_to_a_free_axle_counts_too(sideways: float) -> None:
+    table = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.FreeAxle(1e-4)), (tr.Force((1.0, 0.0, 0.0)),))
+    times, method = np.linspace(0.0, 0.3, 21), Method.of("taylor")
+    start = table.place((-0.1, 0.0), (0.5, 0.0), spin=0.0)  # over the axle, and the table stays as it is
+    ours = method.solve(table, start, times)
+    other = method.solve(table, table.place((-0.1, 0.1 * sideways), (0.5, 0.0), spin=0.0), times)
+    sizes = sizes_of(table, ours)
+    by = np.abs(other.support_coordinates - ours.support_coordinates) / own_sizes(table, ours, sizes)
+    assert np.abs(ours.support_coordinates).max() < 1e-12
+    assert by.max() > 50 * abs(sideways)  # a little of the ball is much of what stands still
+    assert growth(table, start, ours, method, sizes).at(times)[-1] > by.max() / abs(sideways)

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 EXACT, SOLVER = 1e-12, 1e3
 A_ROUNDING = 2.0**-52
 A_STEP = 10.0  # times its tolerance that a method may err in a step
+_SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 SINGULAR = ("curved", "edge")  # ends of a run at which its law is singular
 
 
@@ -66,6 +67,16 @@ def sizes_of(system: RollingSystem, at: Samples) -> dict[str, float]:
     force = max(largest(at.contact_force), float(system.body.mass) * turning * fastest, largest(loads))
     sizes = {"position": largest(at.position), "velocity": fastest, "angular_velocity": fastest / arm}
     return sizes | {"contact_force": force}
+
+
+def own_sizes(system: RollingSystem, at: Samples, sizes: dict[str, float]) -> Array:
+    """Return against what each of the support's own angle and rate is small or not, also where only rounding moves it.
+
+    A step's error is a share of the largest numbers of the state: |q| is 1, and Ω beside a rate.
+    """
+    least = {"angle": _SLOW, "angular velocity": max(_SLOW * sizes["angular_velocity"], 1e-300)}
+    kinds = system.support.motion.coordinate_kinds
+    return np.maximum(np.abs(at.support_coordinates).max(axis=0, initial=0.0), [least[kind] for kind in kinds])
 
 
 def pace_of(system: RollingSystem, at: Samples) -> float:

@@ -16,14 +16,24 @@ from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
 from ..solve.samples import SLIPPING, Event, Samples
-from .bounds import EXACT, SINGULAR, Array, before_a_singular_end, bound_of, largest, pace_of, sizes_of, turned_in
+from .bounds import (
+    EXACT,
+    SINGULAR,
+    Array,
+    before_a_singular_end,
+    bound_of,
+    largest,
+    own_sizes,
+    pace_of,
+    sizes_of,
+    turned_in,
+)
 from .card import CardFigure, checked
 from .friction import normal_and_friction, slip_of
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 from .landings import landings_of
 
 _INSTANTS = 200
-_SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
 _WORK_FOLLOWED = 2e9  # products, in all of a dozen runs: a second or two
 _WORK_FINER = 1.5e9  # products, up to which a run is followed more finely: a second or two
@@ -175,19 +185,8 @@ class Compared:
     def turns(self) -> Array:
         """The largest of the angle between the orientations, rad, and the shares of the support's angle and rate."""
         coordinates = np.abs(self.ours.support_coordinates - self.theirs.support_coordinates)
-        coordinates = coordinates / np.maximum(
-            np.abs(self.ours.support_coordinates).max(axis=0, initial=0.0), self._own_least
-        )
+        coordinates = coordinates / own_sizes(self.system, self.ours, self.sizes)
         return np.maximum(self.angle, np.where(self.alike, coordinates.max(axis=1, initial=0.0), 0.0))
-
-    @property
-    def _own_least(self) -> list[float]:
-        """Against what the support's angle and rate are small or not where only rounding moves it.
-
-        A step's error is a share of the largest numbers of the state: |q| is 1, and Ω beside a rate.
-        """
-        least = {"angle": _SLOW, "angular velocity": max(_SLOW * self.sizes["angular_velocity"], 1e-300)}
-        return [least[kind] for kind in self.system.support.motion.coordinate_kinds]
 
     @cached_property
     def angle(self) -> Array:

@@ -24,7 +24,7 @@ from ..solve.contact_state import moment
 from ..solve.dense import Dense
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, Event, Samples
-from .bounds import A_STEP, SOLVER, Array, largest
+from .bounds import A_STEP, SOLVER, Array, largest, own_sizes
 from .nudging import nudged
 
 MOST = 1e-2  # of the size of a quantity: beyond it nothing is told
@@ -174,13 +174,11 @@ def _responses(
 
     turns = np.stack([_turned(*pair) for pair in pairs], axis=-1)
     fields = {field: apart(field) / max(size, 1e-300) for field, size in sizes.items()}
-    coordinates = (
-        apart("support_coordinates")
-        / np.maximum(np.abs(pairs[0][0].support_coordinates).max(axis=0, initial=0.0), 1e-300)[:, None]
-    )
+    coordinates = apart("support_coordinates") / own_sizes(system, pairs[0][0], sizes)[:, None]
+    own = [np.pad(coordinates[:, [i]], ((0, 0), (0, 2), (0, 0))) for i in range(coordinates.shape[1])]
     moving = np.stack([_followed(system, other) - _followed(system, one) for one, other in pairs], axis=-1)
     followed = [fields["position"], moving / max(sizes["velocity"], 1e-300), fields["angular_velocity"]]
-    return np.concatenate([*followed, turns, coordinates], axis=1), np.stack([*fields.values(), turns], axis=1)
+    return np.concatenate([*followed, turns, coordinates], axis=1), np.stack([*fields.values(), turns, *own], axis=1)
 
 
 def _followed(system: RollingSystem, at: Samples) -> Array:
