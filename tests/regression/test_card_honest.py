@@ -556,6 +556,44 @@ def test_a_rounding_of_the_last_lean_is_no_jump(friction: float, faster: float) 
     assert run.events[-1].kind == "edge"
 
 
+@pytest.mark.parametrize("lean", [0.0065064, -0.005])
+@pytest.mark.parametrize("push", [0.0, 3.258])
+def test_the_centre_of_a_ring_that_all_but_lies_flat_is_as_sharp_as_its_lean(lean: float, push: float) -> None:
+    # A rounding of its orientation moves its contact, and with it the centre, by 100 roundings of a place.
+    passes(
+        body={"kind": "torus", "radius": 0.0917589, "rim_radius": 0.0113727, "density": 1817.93},
+        support={"kind": "dome", "radius": 0.487786},
+        loads=[
+            {"kind": "potential", "formula": f"{push}*x**2"},
+            {"kind": "motor", "value": [0.0, -0.00344823, -0.00959075]},
+        ],
+        start={"position": [0.275874, -0.0610814], "velocity": [0.686436, 1.12357], "attitude": [lean, 0.0058538, 0.0]},
+        run={"duration": 2.0, "every": 0.02},
+    )
+
+
+@pytest.mark.parametrize("faster", [1.0, 1.1])
+def test_a_millionth_of_a_second_between_a_landing_and_a_singular_end_is_followed(faster: float) -> None:
+    run = passes(
+        body={"kind": "ring", "radius": 0.102157, "mass": 0.0112842},
+        support={
+            "kind": "torus-track",
+            "ring_radius": 1.54879,
+            "tube_radius": 1.40437,
+            "side": "outside",
+            "motion": {"kind": "uneven-spin", "rate": 1.66197 * faster, "variation": -0.05598, "variation_rate": 0.164},
+        },
+        loads=[
+            {"kind": "rolling-resistance", "offset": 9.86194e-05},
+            {"kind": "drag", "coefficient": 0.000222475, "air": "turning"},
+        ],
+        start={"position": [-0.265666, 0.15565], "orientation": [0.312042, -0.0855334, -0.02126, -0.699833]},
+        run={"duration": 2.0, "every": 0.02},
+    )
+    *_, landed, ended = run.events
+    assert ended.time - landed.time < 1e-5
+
+
 @pytest.mark.parametrize("height", [0.03, 0.06, 0.0837479])
 def test_a_flight_to_where_the_track_is_as_hollow_as_the_ring(height: float) -> None:
     # The place that is nearest there is known to a root of a rounding only: it differs from one instant to the next.

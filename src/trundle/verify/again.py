@@ -24,7 +24,7 @@ from .stretches import SmoothSegment, stretches
 
 _RUN_AGAIN = 2000  # samples
 _MOST_STRETCHES = 200  # looked at
-_NARROWINGS = 6  # of windows in which the motion changes faster than its samples show
+_NARROWINGS = 10  # of windows in which the motion changes faster than its samples show
 _SMOOTH = 0.1  # of the bound: of what a polynomial may leave of a slope
 _SEEN = 3.0  # rad in a window: a polynomial follows no more
 _LATER = 1e-6  # of the run

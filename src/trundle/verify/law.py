@@ -202,7 +202,8 @@ class _Windows:
         """The speed that rounding of places makes, over the bound, m/s: no smaller one is told from none."""
         at, fastest = self.middle, sum(map(largest, self._speeds))
         place = largest(at.position) + largest(at.contact) + self._bend + fastest * self._clock
-        return max(_ROUNDING * place / self.half / self.bound, 1e-300)
+        rounded = _ROUNDING * place + _SLOPE * blur_of(self.system, at)  # the centre is the contact less ρ
+        return max(rounded / self.half / self.bound, 1e-300)
 
     @cached_property
     def _passing(self) -> float:
