@@ -191,10 +191,13 @@ def test_of_what_p_and_q_are_off_the_law_sees_the_square(name: str, phase: str) 
         ready = lower(system, law, chart)
         right = np.array(chart.of_law(system, time, numbers_of(law, system, time)))
         off, k = right.copy(), ready.names.index("q_w")
-        axes = Matrix.identity() if isinstance(chart, SupportAxes) else support.rotation
-        if k == 3 and not surface.flat:  # a plane is the same over itself
-            own = axes.transpose @ (Vector(*right[:3]) - support.origin)
-            off[:3] += off_by * (axes @ surface.normal(own)).array()
+        if k == 3:
+            axes, origin = support.rotation, support.origin
+            if isinstance(chart, SupportAxes):
+                axes, origin = Matrix.identity(), Vector(0.0, 0.0, 0.0)
+            there = axes.transpose @ (Vector(*right[:3]) - origin) + off_by * Vector(0.4, -0.3, 0.9)
+            off[:3] = (origin + axes @ there).array()
+            right[:3] = (origin + axes @ (there + surface.correction(there))).array()
         off[k : k + 4] *= 1 + off_by
         of = ready.tape.function(ready.outputs)
         given = ready.values([*numbers(system), *[0.5] * law.event_parameters], time)

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from ...errors import InvalidValueError
-from ..algebra import Matrix, TangentialTensor, Vector
+from ..algebra import ZERO, Matrix, TangentialTensor, Vector
 from ..jets import jets
 from ..parts import Lengths, Number, Part
 from ..scalars import Scalar, namespace
@@ -117,20 +117,24 @@ class Surface(Part):
         slope = Vector(*level.gradient)
         return slope * -(level.value / slope.dot(slope))
 
-    def correction(self, p: Vector) -> Vector:
-        """Return the step to where normal and shape operator are to be asked for, given a point all but on it, m.
+    def correction(self, p: Vector) -> Vector:  # noqa: ARG002
+        """Return the step onto the surface of a point that rounding has moved off it, to its square, m.
+
+        A law asks for normal and shape operator there. As a rule none is needed: at p they are those of the surface
+        φ = const through it, beside which this one is as good. It is where a length is taken for known, and where a
+        body may be all but as large as what it is in.
 
         Parameters
         ----------
         p : Vector
-            A point off the surface by rounding, in the support's own frame, m.
+            A point, in the support's own frame, m.
 
         Returns
         -------
         Vector
-            To be added to p; as a rule the step onto the surface.
+            To be added to p.
         """
-        return self.step_onto(p)
+        return ZERO
 
     def known_lengths(self, p: Vector) -> tuple[tuple[Scalar, Scalar], ...]:  # noqa: ARG002
         """Return lengths that other methods work out of a point, each with what it is on the surface itself.

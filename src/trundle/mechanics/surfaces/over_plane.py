@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..algebra import ZERO, Matrix, Vector
+from ..algebra import Matrix, Vector
 from ..jets import Jet, jets
 from ..scalars import Scalar, namespace
 from .base import Surface, check_upright, tangential
@@ -86,10 +86,6 @@ class OverPlane(Surface):
         """Return −n φ/|∇φ|."""
         n, length = self.normal_of(self.slopes(p.x, p.y))
         return n * -(self.level(p) / length)
-
-    def correction(self, p: Vector) -> Vector:  # noqa: ARG002
-        """Return none: normal and shape operator depend on x and y alone."""
-        return ZERO
 
     def normal(self, p: Vector) -> Vector:
         """Return n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²)."""

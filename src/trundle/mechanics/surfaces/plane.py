@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from ..algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
+from ..algebra import E_X, E_Y, E_Z, Matrix, Vector
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar
 from .base import Surface, check_upright
@@ -43,10 +43,6 @@ class Plane(Surface):
     def level(self, p: Vector) -> Scalar:
         """Return the height over the plane, m."""
         return p.z
-
-    def correction(self, p: Vector) -> Vector:  # noqa: ARG002  the same everywhere
-        """Return none: normal and shape operator are the same everywhere."""
-        return ZERO
 
     def normal(self, p: Vector) -> Vector:  # noqa: ARG002  the same everywhere
         """Return the third axis of the support frame."""
