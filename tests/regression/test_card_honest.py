@@ -559,7 +559,7 @@ def test_a_rounding_of_the_last_lean_is_no_jump(friction: float, faster: float) 
 @pytest.mark.parametrize("lean", [0.0065064, -0.005])
 @pytest.mark.parametrize("push", [0.0, 3.258])
 def test_the_centre_of_a_ring_that_all_but_lies_flat_is_as_sharp_as_its_lean(lean: float, push: float) -> None:
-    # A rounding of its orientation moves its contact, and with it the centre, by 100 roundings of a place.
+    # A rounding of its orientation moves its contact, and with it the centre, by hundreds of roundings of a place.
     passes(
         body={"kind": "torus", "radius": 0.0917589, "rim_radius": 0.0113727, "density": 1817.93},
         support={"kind": "dome", "radius": 0.487786},

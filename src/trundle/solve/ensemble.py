@@ -43,7 +43,7 @@ _MOST_UNROLLED = 500
 # Of what is longer, unrolled, the registers hold too little: the rest goes to the stack, which is not aligned for eight
 # doubles, so that some processes take a third longer than others. Four take as long in each, and no longer on the mean.
 _MOST_EIGHT = 300
-_NARROW = 1e-6  # share of a leg, of a gap in which to look more often
+_NARROW = 1e-6  # share of a leg: a narrower gap has no room to look more often in
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
 

@@ -120,9 +120,9 @@ class Surface(Part):
     def correction(self, p: Vector) -> Vector:  # noqa: ARG002
         """Return the step onto the surface of a point that rounding has moved off it, to its square, m.
 
-        A law asks for normal and shape operator there. As a rule none is needed: at p they are those of the surface
-        φ = const through it, beside which this one is as good. It is where a length is taken for known, and where a
-        body may be all but as large as what it is in.
+        A law asks for normal and shape operator there. As a rule it may ask at p itself: there they are those of the
+        surface φ = const through p, on which a motion is as regular. A step is needed where `known_lengths` names a
+        length, and pays where a body may be all but as large as what it is in.
 
         Parameters
         ----------
