@@ -15,7 +15,7 @@ import tomli_w
 
 import trundle as tr
 from trundle.errors import SolverError
-from trundle.solve import compiled_steps, integrator_cache, runge_kutta
+from trundle.solve import compiled_steps, integrator_cache, runge_kutta, transitions
 from trundle.solve.tape import Tape
 from trundle.solve.tracing import CompiledLaw
 
@@ -27,7 +27,7 @@ BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 @pytest.fixture
 def compiling(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Compile every law after its first steps, and count the calls of the loop."""
-    monkeypatch.setattr(runge_kutta, "WORTH_COMPILING", 0)
+    monkeypatch.setattr(runge_kutta, "TO_COMPILE", (0.0, 0.0))
     calls: list[int] = []
     loop = compiled_steps._loop
 
@@ -194,9 +194,9 @@ def test_the_same_run_twice_is_the_same_to_the_last_bit() -> None:
     assert np.array_equal(first.orientation, second.orientation)
 
 
-@pytest.mark.parametrize("compile_at", [0, 10**9])
-def test_a_pole_of_a_formula_is_told_in_the_same_words(compile_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runge_kutta, "WORTH_COMPILING", compile_at)
+@pytest.mark.parametrize("to_compile", [0.0, 1e30])
+def test_a_pole_of_a_formula_is_told_in_the_same_words(to_compile: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runge_kutta, "TO_COMPILE", (to_compile, 0.0))
     push = tr.Force(("0.01 / (20 - t)**2", 0.0, 0.0))
     system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), loads=[push])
     with pytest.raises(SolverError, match=r"hardly gets on at t = 19\.99"):
@@ -244,6 +244,24 @@ semi_axes = [1.8455, 0.627171, 0.461982]
 friction = 0.358805
 motion = { kind = "tilt", angle = -0.0183536 }
 """,
+    "slip of a long law that settles after some dozens of steps": """
+loads = [
+    { kind = "pivot-friction", offset = 0.000261909, below = 9.22363 },
+    { kind = "rolling-resistance", offset = 3.03991e-05 },
+]
+body = { kind = "hollow-sphere", radius = 0.0233189, mass = 0.0430259 }
+run = { duration = 2.0, every = 0.01 }
+[support]
+kind = "cone"
+half_angle = 0.0277551
+side = "inside"
+friction = 0.0621594
+motion = { kind = "move", position = [0.0, "0.0240545*cos(0.412206*t) + 0.0402936", 0.0143341] }
+[start]
+position = [0.0367765, 0.0210314]
+angular_velocity = [5.0983, 26.7958, 0.338171]
+orientation = [-0.821432, 0.255377, 0.282854, 0.0]
+""",
 }
 
 
@@ -254,6 +272,18 @@ def test_no_law_is_compiled_for_the_few_steps_to_where_it_ends_the_run(
     monkeypatch.setattr("trundle.solve.compiled_loop.compiled", lambda *_: pytest.fail("compiled"))
     run = tr.Scenario.loads(CURVED[name]).run()
     assert run.events[-1].kind == "curved", run.events
+
+
+def test_a_law_of_more_operations_is_worth_compiling_for_more_steps_up_to_a_limit() -> None:
+    """The compiler's time grows with the law, and so does that of a step; what a step takes in any case does not."""
+    ball, egg = BALL, tr.Body.ellipsoid((0.03, 0.02, 0.025), 0.1)
+    plane, bowl = tr.Plane(), tr.EllipsoidalBowl((0.5, 0.4, 0.3))
+    steps = []
+    for body, surface in ((ball, plane), (egg, plane), (egg, bowl)):
+        system = tr.RollingSystem(body, tr.Support(surface))
+        start = transitions.at_start(system, system.place((0.01, 0.02)))
+        steps.append(runge_kutta.worth_compiling(system, start))
+    assert 500 < steps[0] < steps[1] < steps[2] < 6000, steps
 
 
 def slipping_again_and_again(duration: float) -> tr.Scenario:

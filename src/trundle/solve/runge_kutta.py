@@ -46,8 +46,9 @@ OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loo
 _OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
 _BEGINNING = 20  # steps, after which one sees how many there will be
 _SEEN = 0.0005  # share of the steps to come to be done first: where slip begins, there seem to be far too many
+_TRIED = 0.1  # share of the steps that are worth compiling to be done first: no more is lost where few come after all
 _GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
-WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
+TO_COMPILE = (2e8, 4.4e6)  # products in the time in which numba compiles a law, and for each operation of it
 
 
 @dataclass
@@ -173,6 +174,16 @@ def first_steps(system: RollingSystem, now: PhaseStart, end: float, tolerance: f
     return (paths.reached - paths.begins[count // 2]) / (len(paths.begins) - count // 2)
 
 
+def worth_compiling(system: RollingSystem, now: PhaseStart) -> float:
+    """Return for how many steps of a law SciPy takes as long as numba takes to compile it."""
+    return _worth_compiling(_traced(system, now))
+
+
+def _worth_compiling(traced: PythonLaw) -> float:
+    at_all, each = TO_COMPILE
+    return (at_all + each * traced.operations) / (_OF_SCIPY + traced.operations * _PRODUCTS * _RATES)
+
+
 def _traced(system: RollingSystem, now: PhaseStart) -> PythonLaw:
     """Return a law as it begins to hold on plain numbers."""
     given = (*now.event_parameters, *corners.directions(system, now))
@@ -284,9 +295,9 @@ class _StepsToCome:
 
     How many there will be, the last of them tell and how far the law seems to lead: to the run's end, or to where an
     event function comes to zero that goes on falling as it fell. While steps grow nothing is known, nor where there
-    seem to be more than are ever taken; of very many a share is to be done first. Where half of what is worth it is
-    done, stretches of this law have come again and again: only what ends the run ends them. Once a run has had a law
-    compiled, that is there for each later stretch of it.
+    seem to be more than are ever taken; a share of them, and of what is worth it, is to be done first. Where half of
+    what is worth it is done, stretches of this law have come again and again: only what ends the run ends them. Once a
+    run has had a law compiled, that is there for each later stretch of it.
 
     Parameters
     ----------
@@ -302,6 +313,7 @@ class _StepsToCome:
 
     def __init__(self, law: Law, traced: PythonLaw, begin: float, stepper: Any, taken: Taken) -> None:
         self.law, self.traced, self.begin, self.stepper, self.taken = law, traced, begin, stepper, taken
+        self.worth = _worth_compiling(traced)
         self.ending = np.array([name in (*phases.ENDS, "jam") for name in traced.names], dtype=bool)
         self.count, self.time, self.values = 0, float(stepper.t), self._event_functions()
 
@@ -316,14 +328,15 @@ class _StepsToCome:
         gone, left = self.stepper.t - self.time, self._left()
         mean = gone / _BEGINNING
         growing, coming = self.stepper.h_abs > _GROWING * mean, left / mean
-        seen = self.taken.steps[type(self.law)] >= min(_SEEN * coming, WORTH_COMPILING / 2)
-        return seen and not growing and WORTH_COMPILING < coming < _most_steps(self.law)
+        first = min(max(_SEEN * coming, _TRIED * self.worth), self.worth / 2)
+        seen = self.taken.steps[type(self.law)] >= first
+        return seen and not growing and self.worth < coming < _most_steps(self.law)
 
     def _left(self) -> float:
         """Return how much time seems to be left, s, seen over the steps since this was last asked."""
         gone, before = self.stepper.t - self.time, self.values
         self.time, self.values = float(self.stepper.t), self._event_functions()
-        which = self.ending | (2 * self.taken.steps[type(self.law)] < WORTH_COMPILING)
+        which = self.ending | (2 * self.taken.steps[type(self.law)] < self.worth)
         return min(self.stepper.t_bound - self.time, until_one_falls(before[which], self.values[which], gone))
 
     def _event_functions(self) -> Array:
