@@ -34,3 +34,37 @@ def test_a_motion_that_is_yet_to_begin_has_a_time_in_which_it_does(power: int, b
     start = system.place((0.0, 0.0), time=begin)
     expected = (0.1 * 1.0 / 0.7) ** (1 / (power + 2))
     assert expected <= ContactState.of(system, start).moment(system) <= 10 * expected
+
+
+BODIES = {
+    "ball": tr.Body.solid_sphere(0.03, 0.1),
+    "ring": tr.Body.ring(0.035, 0.2229),
+    "disc": tr.Body.disc(0.04, 0.2),
+    "torus": tr.Body.torus(0.04, 0.01, 0.2),
+    "ellipsoid": tr.Body.ellipsoid((0.05, 0.03, 0.02), 0.1),
+}
+RESISTANCES: dict[str, list[tr.Load]] = {
+    "none": [],
+    "rolling": [tr.RollingResistance(5e-4)],
+    "pivot": [tr.PivotFriction(3e-4)],
+    "couple": [tr.RollingCouple(4e-5)],
+}
+
+
+@pytest.mark.parametrize("side", ["inside", "outside"])
+@pytest.mark.parametrize("place", [(-0.1, -0.05), (0.0, 0.02)])
+@pytest.mark.parametrize("friction", [0.05, 0.4, 1.5])
+@pytest.mark.parametrize("resistance", RESISTANCES)
+@pytest.mark.parametrize("body", BODIES)
+def test_what_is_let_go_beside_an_upright_wall_falls_along_it(
+    body: str, resistance: str, friction: float, place: tuple[float, float], side: str
+) -> None:
+    # Nothing presses it on, so nothing rubs: neither the wall nor a resistance has a part in it.
+    wall = tr.Support(tr.Cylinder(0.355, side=side), friction=friction)
+    system = tr.RollingSystem(BODIES[body], wall, loads=RESISTANCES[resistance])
+    start = system.place(place)
+    run = tr.simulate(system, start, 0.6, 0.1)
+    assert run.card().passed, str(run.card())
+    fallen = np.outer(-9.80665 / 2 * run.samples.time**2, (0.0, 0.0, 1.0))
+    np.testing.assert_allclose(run.samples.position, start.position + fallen, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(run.samples.orientation, np.tile(start.orientation, (7, 1)), rtol=0, atol=1e-9)

@@ -22,6 +22,7 @@ from .samples import RESTING
 from .tracing import python_law
 
 _FIRST = 1e-6  # share of the time in which the motion changes that the first moment of slip takes
+_ROLLED = 10 * _FIRST**2  # share of the forces at hand that rolling in that moment takes off N, where it is none
 _SEEN = 1e-4  # the same, over which one sees how its direction turns
 
 
@@ -58,7 +59,7 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     def later(wait: float) -> tuple[ContactState, _Growth | None]:
         moved = law.rk4_step(system, time, numbers, wait, rates)
         then = law.unpack(system, time + wait, moved)
-        return then, _growth(system, then, law)
+        return then, _growth(system, then, law, _ROLLED)
 
     begun, (_, halfway), (then, grown) = _growth(system, at, law), later(0.5 * moment), later(moment)
     if grown is None or halfway is None:
@@ -100,15 +101,18 @@ class _Growth:
     settling: float  # of its direction, times |s|, m/s²
 
 
-def _growth(system: RollingSystem, at: ContactState, law: Law) -> _Growth | None:
-    """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
+def _growth(system: RollingSystem, at: ContactState, law: Law, floor: float = WEIGHTLESS) -> _Growth | None:
+    """Return how slip grows: where friction only just gives way, against the friction that rolling takes.
+
+    The support may seem to pull by a share of the forces at hand.
+    """
     state, held, q = at.state, law.code == RESTING, at.orientation
     try:
         contact, first = _against(system, at, held=held)
     except ZeroDivisionError:  # nothing asks for friction
         return None
     rates = slip_rates(system, state.time, contact, q, at.Omega, first, ZERO, state.support, held=held)
-    least = -WEIGHTLESS * at.forces(system)
+    least = -floor * at.forces(system)
     c, s, settling = rates.settled()
     if c > 0 and settling > 0 and _rate(rates, c, s) > 0 and rates.normal_force(c, s) > least:
         return _Growth(rates.direction(c, s), _rate(rates, c, s), settling)
