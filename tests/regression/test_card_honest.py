@@ -15,6 +15,7 @@ from trundle.solve.dense import Dense
 from trundle.solve.methods import Method
 from trundle.solve.patience import Patience
 from trundle.solve.samples import FLIGHT
+from trundle.verify import law
 from trundle.verify.again import Again
 from trundle.verify.bounds import sizes_of
 from trundle.verify.compared import Compared
@@ -210,6 +211,128 @@ def test_a_flight_that_ends_where_no_point_of_the_support_is_nearest() -> None:
     )
     assert run.method == "runge-kutta"
     assert [event.kind for event in run.events] == ["lift", "curved"]
+
+
+NEAR_AN_END = {
+    # Rounding of V, of places and of ρ adds up: none of them alone is what the slope of V is off.
+    "a torus that slips over waves": (
+        {
+            "body": {"kind": "torus", "radius": 0.152593, "rim_radius": 0.0644632, "mass": 1.08559},
+            "support": {
+                "kind": "height-field",
+                "formula": "0.0344411*sin(9.27021*x)*cos(2.88177*y)",
+                "tilt": "45 deg",
+                "friction": 0.0535826,
+            },
+            "loads": [{"kind": "torque", "value": ["0.00520443*sin(0.455723*t)", -0.437712, "0.06*sqrt(1 + 2.4*t)"]}],
+            "start": {"position": [0.0870938, 0.0326401], "orientation": [0.075756, -0.187056, 0.964794, 0.0416816]},
+            "run": {"duration": 2, "every": 0.02},
+        },
+        "curved",
+    ),
+    # Its contact runs 20 to 30 times as fast as its points: so many times a rounding of q is one of ρ̇.
+    "a disc that rolls on a wave": (
+        {
+            "gravity": 1.62,
+            "body": {"kind": "disc", "radius": 0.138512, "mass": 0.00825765},
+            "support": {
+                "kind": "height-field",
+                "formula": "0.00672684*sin(7.0674*x)*cos(20.3578*x) + 0.00665141*exp(x)",
+                "restitution": 0.123278,
+            },
+            "start": {"position": [0.269592, 0.183184], "velocity": [0.0, -1.58284, -0.68829], "spin": 4.28711},
+            "run": {"duration": 2, "every": 0.0344283},
+        },
+        "curved",
+    ),
+    # Its contact passes at 6 km/s what moves at 1 mm/s: so many times a rounding is one of N.
+    "a ring that all but rests in a bowl": (
+        {
+            "gravity": 30,
+            "body": {"kind": "ring", "radius": 0.130939, "mass": 1.92392},
+            "support": {
+                "kind": "bowl",
+                "radius": 1.50903,
+                "friction": 0.639911,
+                "kinetic_friction": 0.161269,
+                "tangential_restitution": 0.174488,
+            },
+            "loads": [
+                {"kind": "rolling-resistance", "offset": 0.00163649},
+                {"kind": "force", "value": [0.0, "48.6987*(1 - exp(-t))", -5.85436]},
+            ],
+            "start": {"position": [0.157215, 0.00618215]},
+            "run": {"duration": 1.55917, "every": 0.02},
+        },
+        "curved",
+    ),
+    # By the edge of its shape the last digits of p turn the normal of a narrow cone.
+    "a hemisphere that flies down a cone": (
+        {
+            "body": {"kind": "hemisphere", "radius": 0.0278664, "mass": 0.545962},
+            "support": {
+                "kind": "cone",
+                "half_angle": 0.116722,
+                "tilt": "45 deg",
+                "friction": 0.766418,
+                "restitution": 0.0886718,
+                "motion": {
+                    "kind": "uneven-spin",
+                    "rate": 0.664501,
+                    "variation": 0.0286544,
+                    "variation_rate": 0.472799,
+                },
+            },
+            "start": {
+                "position": [0.0294921, 0.0],
+                "velocity": [-0.025037, 0.0, 0.893717],
+                "spin": 0.948385,
+                "attitude": [-0.00731487, -0.054886, "45 deg"],
+            },
+            "run": {"duration": 2, "every": 0.02},
+        },
+        "edge",
+    ),
+    # In flight over a table 1 + C S goes with the root of what the state is off.
+    "a ring that flies over a funnel": (
+        {
+            "body": {"kind": "ring", "radius": 0.139403, "mass": 0.589753},
+            "support": {
+                "kind": "revolution",
+                "r": [0.0, 0.0133002, 0.0532007, 0.119702, 0.212803, 0.332504],
+                "z": [0.0, 0.0169886, 0.0679544, 0.152898, 0.271818, 0.424715],
+                "tangential_restitution": 0.0234288,
+            },
+            "start": {"position": [0.0922631, -0.146428], "velocity": [-1.48126, -1.06934, -1.03627]},
+            "run": {"duration": 2, "every": 0.02},
+        },
+        "curved",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", NEAR_AN_END)
+def test_what_rounding_does_near_an_end_adds_up(kind: str) -> None:
+    tables, end = NEAR_AN_END[kind]
+    run = passes(**tables)
+    assert run.events[-1].kind == end
+    for column in ("velocity", "position", "angular_velocity"):
+        values = run.data[column].copy(deep=True)
+        values[1:] += 1e-5 * float(np.abs(values).max())
+        assert not replace(run, data=run.data.assign({column: values}), _kept={}).card().passed, column
+
+
+def test_a_force_that_is_a_little_off_is_seen_near_an_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    tables, _ = NEAR_AN_END["a torus that slips over waves"]
+    run = tr.Scenario.loads(tomli_w.dumps(tables)).run()
+    acting = law.acting
+
+    def pulled(system: Any, at: Any) -> Any:
+        F, *rest = acting(system, at)
+        return F + 1e-8 * np.abs(F).max(), *rest
+
+    monkeypatch.setattr(law, "acting", pulled)
+    assert not run.card()["law of motion"].passed
 
 
 # --- what changes faster than the samples show --------------------------------------------------------------
@@ -570,6 +693,19 @@ def test_the_centre_of_a_ring_that_all_but_lies_flat_is_as_sharp_as_its_lean(lea
         start={"position": [0.275874, -0.0610814], "velocity": [0.686436, 1.12357], "attitude": [lean, 0.0058538, 0.0]},
         run={"duration": 2.0, "every": 0.02},
     )
+
+
+def test_a_rounding_of_the_arm_turns_a_body_that_is_light_to_turn() -> None:
+    # 130 kg with the moments of a gram or so: a blow of 500 N s all but through its centre.
+    body = {"kind": "torus", "radius": 0.155801, "rim_radius": 0.0803826, "density": 6617.34}
+    support = {"kind": "plane", "rim": 0.261342, "friction": 0.369436}
+    run = passes(
+        body=body | {"moments": [0.000629289, 0.00103358, 0.000550821]},
+        support=support | {"motion": {"kind": "wobble", "rate": -19.1455, "angle": "90 deg"}},
+        start={"position": [0.0310921, 0.0617143], "height": 0.0695909},
+        run={"duration": 0.579049, "every": 0.02},
+    )
+    assert [event.kind for event in run.events] == ["land", "rim"]
 
 
 @pytest.mark.parametrize("faster", [1.0, 1.1])

@@ -17,8 +17,11 @@ from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
 from ..solve.samples import SLIPPING, Event, Samples
 from .bounds import (
+    A_ROUNDING,
+    A_STEP,
     EXACT,
     SINGULAR,
+    SOLVER,
     Array,
     before_a_singular_end,
     bound_of,
@@ -276,19 +279,23 @@ class Compared:
         """Each landing's time, and how many times larger an error of the place in flight shows at it, and after it.
 
         A change of the start does not show it: what lifted off was in contact, whatever the start. By an error δ of the
-        gap it comes down δ/|sₙ| later, which is long where it all but grazes the support, and at another speed.
+        gap it comes down δ/|sₙ| later, which is long where it all but grazes the support, and at another speed. A
+        rounding of ρ, too, turns a body that is light to turn.
         """
         span = max(float(self.ours.time[-1] - self.start.time), 1e-300)
         size, speed, force = (max(self.sizes[field], 1e-300) for field in ("position", "velocity", "contact_force"))
         turning = self.turned / span * self.bound / self.angle_bound
         pace = max(1 / span, speed / size, force / (float(self.system.body.mass) * speed), turning)
+        turns = A_ROUNDING * SOLVER / (A_STEP * self.bound) * size / max(self.sizes["angular_velocity"], 1e-300)
         rows = []
         for landing in landings_of(self.system, self.ours.events[: self._shifts.size]):
             if landing.jolted:
                 continue
             closing = max(-float(landing.comes @ landing.n), 1e-300)
             jumps = float(np.linalg.norm(landing.goes - landing.comes)) / speed
-            rows.append((landing.before.time, size * pace / closing, size * landing.pull / closing**2 * jumps))
+            turned = turns * float(np.linalg.norm(landing.impulse) / np.linalg.eigvalsh(landing.J)[0])
+            after = max(size * landing.pull / closing**2 * jumps, turned)
+            rows.append((landing.before.time, size * pace / closing, after))
         return np.array(rows).reshape(-1, 3)
 
     def _delayed(self, times: Array) -> Array:

@@ -23,7 +23,7 @@ from .card import CardFigure, checked
 _WORTH_TELLING = 1e-3  # of its bound
 _ROUNDING = 1e-15  # of a place: a few roundings
 _LASTING = 0.1  # rad, or of a body's size: what comes off is a ten-thousandth of it away by then
-_PULLS = 1e-13  # share of the forces at hand: more than rounding, and less than what a flight begins with
+_PRESSES = 1e-13  # share of the forces at hand: more than rounding
 _STEP = 1e-6  # of a length, for the slope of the level function
 
 
@@ -143,28 +143,28 @@ class EachSample:
     def _staying(self, gap: Array) -> Array:
         """Return 1 in flights that never leave the support, although they last: the body was let go for nothing.
 
-        Where a wall would have had to pull, a body may fall along it.
+        Where a wall would not have pressed on it, a body may fall along it.
         """
         at, found = self.at, np.zeros(gap.size)
         arms, speeds = np.linalg.norm(at.contact - at.position, axis=1), np.linalg.norm(at.velocity, axis=1)
         noise = _ROUNDING * (largest(at.contact) + largest(at.position))
         parts = np.split(np.arange(gap.size), np.searchsorted(at.time, [event.time for event in at.events]))
         for part, since in zip(parts, (None, *at.events), strict=True):
-            if part.size < 2 or not self.flies[part].all() or (since is not None and self._would_pull(since)):
+            if part.size < 2 or not self.flies[part].all() or (since is not None and not self._would_press(since)):
                 continue
             arm, spins = arms[part].max(), np.linalg.norm(at.angular_velocity[part], axis=1).max()
             lasts = np.ptp(at.time[part]) * (spins + speeds[part].max() / arm) > _LASTING
             found[part] = float(lasts and gap[part].max() <= EXACT * arm + noise)
         return found
 
-    def _would_pull(self, since: Event) -> bool:
-        """Tell whether the support would have to pull a body that rolled on from an event."""
+    def _would_press(self, since: Event) -> bool:
+        """Tell whether the support would press on a body that rolled on from an event."""
         if since.after is None or since.contact is None:
-            return False
+            return True
         at = ContactState.of(self.system, since.after, Vector(*since.contact))
         rolling = roll(self.system, at.state.time, at.contact.point, at.orientation, at.Omega, at.state.support)
         N = float(rolling.reaction.dot(rolling.contact.normal))
-        return N + _PULLS * at.forces(self.system) < 0
+        return N - _PRESSES * at.forces(self.system) > 0
 
     def _aside(self, apart: Array, gap: Array) -> Array:
         """Return how far the two points are beside each other, m; in flight no more than how far p is beside its place.
@@ -191,12 +191,14 @@ class EachSample:
             beyond = np.hypot(there.x, there.y) - float(surface.rim)
             yield Shares("inside the rim", np.broadcast_to(beyond, shape) / size, self.bound)
         nu = Quaternion.of(self.at.orientation).matrix().transpose @ Vector.of(self.normals)
-        for name, inside in (
-            ("before the end", surface.domain_margin(there)),
-            ("on its shape", system.body.shape.validity_margin(-nu)),
+        # Where the support bends, what p may be off turns the normal, and so moves the point of the body that is next.
+        bend = sum(row.dot(row) for row in self._touch.shape_operator.rows) ** 0.5
+        for name, inside, sharp in (
+            ("before the end", surface.domain_margin(there), 1.0),
+            ("on its shape", system.body.shape.validity_margin(-nu), 1 + bend * size),
         ):
             if inside is not None:
-                yield Shares(name, -np.broadcast_to(np.asarray(inside, dtype=float), shape), self.bound)
+                yield Shares(name, -np.broadcast_to(np.asarray(inside, dtype=float), shape), self.bound * sharp)
 
     def _fitting(self) -> Iterator[Shares]:
         """Yield what ties the numbers of a sample together."""

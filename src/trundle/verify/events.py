@@ -333,8 +333,9 @@ class AtEvents:
             yield event, "at the rim", abs(float(off)) / self._sizes["position"], _GOES_ON * self.bound
         elif event.kind in ("end", "edge", "curved"):
             left, then = self._left(event, at), self._sample(event.time)
-            allowed = _SHORT + (_GOES_ON * self.bound if event.kind == "curved" else 0.0)
-            if then is not None:  # it goes with the root of the time that is left, its square evenly with the time
+            # It goes with the root of the time that is left: its square evenly with the time, and with the state.
+            allowed = _SHORT + (float(np.sqrt(self.bound)) if event.kind == "curved" else 0.0)
+            if then is not None:
                 fallen = left**2 - self._left(event, then) ** 2
                 allowed += float(np.sqrt(_CLOSE * fallen if fallen > 0 else -_UNSURE * fallen))
             yield event, "1 + C S singular" if event.kind == "curved" else "at the end", abs(left), allowed

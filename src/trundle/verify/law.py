@@ -296,12 +296,20 @@ class _Windows:
         V, at = np.abs(self.middle.velocity).max(), self.middle
         turning = largest(at.angular_velocity)
         fastest = sum(map(largest, self._speeds)) + turning * largest(at.contact - at.position)
+        if self.phase == ROLLING:
+            fastest += self._passing  # Ω×ρ̇
         sharp = _ROUNDING * fastest / self.half / self.bound  # of Ω×ρ also where Ω is along ρ
-        acting = np.abs(F).max() / float(self.system.body.mass)
-        size = max(acting, np.abs(V_rate).max())
+        m = float(self.system.body.mass)
+        size = max(np.abs(F).max() / m, np.abs(V_rate).max())
         arm = largest(at.contact - at.position)
         blurred = self._blurred * max(size / arm, _SLOPE * turning / self.half)
-        return float(max(size, V * self.rate, sharp, blurred, 1e-300))
+        pressed = A_ROUNDING * self._leverage * largest(at.contact_force) / m / self.bound
+        return float(max(size, V * self.rate, 1e-300) + sharp + blurred + pressed)
+
+    @cached_property
+    def _leverage(self) -> float:
+        """How many times as fast as what moves it the contact moves: of N, so many times rounding is left."""
+        return self._passing / max(sum(map(largest, self._speeds)), 1e-300)
 
     @cached_property
     def _blurred(self) -> float:
