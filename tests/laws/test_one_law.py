@@ -16,6 +16,10 @@ from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.contact import roll
 from trundle.mechanics.parameters import numbers, with_numbers
 from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
+from trundle.mechanics.surfaces.over_plane import OverPlane
+from trundle.solve.tape import Tape
+from trundle.solve.tracing import python_law
+from trundle.solve.transitions import at_start
 
 PUSHED = (tr.Force((0.25, -0.5, 0.125)), tr.Torque((0.01, 0.02, -0.03)), tr.Drag(0.3))
 TUMBLE = Tumble(1.5, 0.25, -0.75, Vector(0.5, -0.25, 0.125), 2.0)
@@ -154,3 +158,51 @@ def _value(expression: Any, known: dict[Any, Any]) -> Any:
             parts = [_value(part, known) for part in expression.args]
             known[expression] = operations[expression.func.__name__](*parts)
     return known[expression]
+
+
+@pytest.mark.parametrize("power", [-3, -1.5, -0.5, 0, 0.5, 1.5, 2, 2.5, 7, 0.3, -1.7])
+def test_a_power_that_is_recorded_is_the_power(power: float) -> None:
+    tape = Tape()
+    (x,) = tape.inputs(1)
+    recorded = tape.function([x**power])
+    for value in (0.25, 1.0, 1.7, 30.0):
+        assert recorded([value])[0] == pytest.approx(value**power, rel=1e-14)
+    with pytest.raises(TypeError):
+        x**x
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_a_surface_of_ones_own_may_take_any_power(method: str) -> None:
+    """A ball dropped from rest in z = r^1.5 has the speed that its fall gives it, whoever recorded the height."""
+
+    class Cusp(OverPlane):
+        axisymmetric = True
+
+        def height(self, x: Any, y: Any) -> Any:
+            return (x * x + y * y + 0.01) ** 0.75
+
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(Cusp()))
+    start = system.place((0.2, 0.1))
+    run = tr.simulate(system, start, 0.4, 0.05, method=method)
+    at = run.samples
+    energy = 0.5 * 0.1 * (at.velocity**2).sum(axis=1) + 0.5 * 4e-5 * 0.4 * (at.angular_velocity**2).sum(axis=1)
+    fallen = 0.1 * 9.80665 * (at.position[0, 2] - at.position[:, 2])
+    np.testing.assert_allclose(energy, fallen, rtol=1e-9, atol=1e-13)
+    assert run.card().passed
+
+
+@pytest.mark.parametrize("phase", ["rolls", "slips", "flies"])
+def test_what_ends_a_stretch_is_that_of_the_unit_quaternion(phase: str) -> None:
+    """Steps leave |q| off 1; of samples it is 1, and where N is 0 for one it is so for the other."""
+    motion = tr.Support(tr.Bowl(0.8), friction=0.2, motion=tr.Wobble(3.5, 0.1))
+    system = tr.RollingSystem(EGG, motion, loads=PUSHED)
+    given: Any = {"velocity": (0.3, 0.1)} if phase == "rolls" else {"angular_velocity": (3.0, -1.0, 2.0)}
+    start = system.place(
+        (0.05, 0.02), **given | ({"height": 0.1} if phase == "flies" else {}), attitude=(0.3, 0.5, 0.2)
+    )
+    now = at_start(system, start)
+    law = python_law(system, now.law, now.event_parameters, now.time, now.state_vector)
+    y = np.array(now.state_vector)
+    wanted = np.array(law.event_functions(now.time, y.tolist()))
+    y[3:7] *= 1.01
+    np.testing.assert_allclose(law.event_functions(now.time, y.tolist()), wanted, rtol=1e-11, atol=1e-12)

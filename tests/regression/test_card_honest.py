@@ -695,6 +695,60 @@ def test_the_centre_of_a_ring_that_all_but_lies_flat_is_as_sharp_as_its_lean(lea
     )
 
 
+@pytest.mark.parametrize("spin", [-14.982, 14.982, -7.3])
+def test_a_spinning_ring_that_touches_the_wall_by_a_rounding_each_half_turn(spin: float) -> None:
+    # It falls freely beside an upright wall, and is as far from it after half a turn as before: not at all.
+    run = passes(
+        body={"kind": "ring", "radius": 0.0519615, "mass": 0.821915},
+        support={"kind": "cylinder", "radius": 0.340249, "friction": 0.118612},
+        start={"position": [0.0133314, -0.00630666], "angular_velocity": [0.124072, spin, 0.0]},
+        run={"duration": 1.25184, "every": 0.02},
+    )
+    fall = run.samples.position[0, 2] - run.samples.position[:, 2]
+    np.testing.assert_allclose(fall, 9.80665 / 2 * run.samples.time**2, rtol=0, atol=1e-6)
+
+
+def test_the_contact_of_a_flight_that_ends_where_none_is_nearest() -> None:
+    run = passes(
+        body={"kind": "ring", "radius": 0.0567743, "mass": 0.0233263},
+        support={
+            "kind": "height-field",
+            "formula": "0.0309331*sin(23.8839*x)*cos(8.88022*y) + -0.0239599*exp(x)",
+            "friction": 0.115313,
+            "tangential_restitution": 0.104314,
+        },
+        start={
+            "position": [0.0062303, 0.0798009],
+            "velocity": [-1.435, 0.0587431, -0.0544254],
+            "orientation": [-0.512733, -0.0514721, -0.0234051, -0.394995],
+            "time": -0.469896,
+        },
+        run={"duration": 1.60406, "every": 0.0518702},
+    )
+    assert [event.kind for event in run.events] == ["curved"]
+
+
+def test_what_comes_off_while_it_spins_fast_is_no_longer_pressed_on() -> None:
+    # At 130 rad/s a rounding of |q| by Runge-Kutta's method was 1e-9 N of the normal force.
+    run = passes(
+        body={
+            "kind": "formula",
+            "support_function": "0.0440204 + 0.00354838*nu_z + 0.00252959*nu_z**2",
+            "density": 1292.76,
+        },
+        support={"kind": "plane", "tilt": -0.104085, "friction": 0.0233857},
+        loads=[{"kind": "torque", "value": [-0.0336972, -0.00348294, "-0.00250331*t*exp(-t)"]}],
+        start={
+            "position": [0.303598, 0.00475827],
+            "angular_velocity": [0.0, 10.6626, 0.0],
+            "attitude": [-1.38068, 0.118222, 0.11984],
+            "height": 0.00472142,
+        },
+        run={"duration": 2.0, "every": 0.02, "method": "runge-kutta"},
+    )
+    assert sum(event.kind == "lift" for event in run.events) > 5
+
+
 def test_a_rounding_of_the_arm_turns_a_body_that_is_light_to_turn() -> None:
     # 130 kg with the moments of a gram or so: a blow of 500 N s all but through its centre.
     body = {"kind": "torus", "radius": 0.155801, "rim_radius": 0.0803826, "density": 6617.34}

@@ -257,9 +257,15 @@ class Node:
     def __bool__(self) -> bool:
         raise TypeError("What is recorded has no value to decide by: choose by `where` of `scalars.namespace`.")
 
-    def __pow__(self, power: int) -> Any:
+    def __pow__(self, power: float) -> Any:
+        if not isinstance(power, (int, float)):
+            return NotImplemented
         if power < 0:
             return 1.0 / self**-power
+        if power % 1 == 0.5:
+            return self ** (power - 0.5) * _Functions.sqrt(self)
+        if power % 1:
+            return _Functions.exp(power * _Functions.log(self))
         half = self ** (power // 2) if power > 1 else 1.0
         return half * half * self if power % 2 else half * half
 

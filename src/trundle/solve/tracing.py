@@ -10,7 +10,7 @@ from typing import Any
 
 from ..mechanics.duals import has_duals
 from ..mechanics.parameters import numbers, structure_of, with_numbers
-from ..mechanics.scalars import Scalar, as_float
+from ..mechanics.scalars import Scalar, as_float, namespace
 from ..mechanics.system import RollingSystem, State
 from . import corner_events
 from .laws import Law, RollingLaw
@@ -171,7 +171,8 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     symbolic, free = with_numbers(system, parameters[:count]), law.traced()
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
-    stops = corner_events.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
+    own_stops = parameters[count + len(own) :]
+    stops = corner_events.all_event_functions(symbolic, free, time, _recorded(state), own_stops)
     found = free.found(symbolic, time, state)
     vectors = [part for vector in corner_events.vectors(symbolic, free, time, state) for part in vector]
     rates_, stops_, found_, vectors_ = (tape.function(part) for part in (rates, list(stops.values()), found, vectors))
@@ -184,6 +185,12 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)))
 
 
+def _recorded(state: Sequence[Scalar]) -> list[Scalar]:
+    """Return a state with q/|q|, as samples hold it: else N is 0 at an instant at which a sample has some."""
+    length = namespace(*state[3:7]).sqrt(sum((part * part for part in state[3:7]), 0.0))
+    return [*state[:3], *(part / length for part in state[3:7]), *state[7:]]
+
+
 def _untraced(
     system: RollingSystem, law: Law, event_parameters: Sequence[float], time: float, state: Sequence[float]
 ) -> PythonLaw:
@@ -191,7 +198,7 @@ def _untraced(
         return [as_float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
-        found = corner_events.all_event_functions(system, law, t, y, event_parameters)
+        found = corner_events.all_event_functions(system, law, t, _recorded(y), event_parameters)
         return [as_float(value) for value in found.values()]
 
     def found(t: float, y: Sequence[float]) -> list[float]:

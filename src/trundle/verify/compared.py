@@ -262,10 +262,11 @@ class Compared:
     def _apart(self, mine: Event, other: Event) -> float:
         """Return how far the states at an event differ, as a share."""
         pairs = [(mine.before, other.before), (mine.after, other.after)]
-        moved = np.subtract(mine.contact or other.contact or 0.0, other.contact or mine.contact or 0.0)
-        # At a singular end a rounding of the lean is more than one of the place and of V.
-        told = ("angular_velocity",) if mine.kind in SINGULAR else ("position", "velocity", "angular_velocity")
+        # At a singular end a rounding of the lean is more than one of the place, of the contact and of V.
+        singular = mine.kind in SINGULAR
+        told = ("angular_velocity",) if singular else ("position", "velocity", "angular_velocity")
         sizes = {field: self.sizes[field] for field in told}
+        moved = np.subtract(mine.contact or other.contact or 0.0, other.contact or mine.contact or 0.0) * (not singular)
         apart = [
             float(np.linalg.norm(np.subtract(getattr(one, field), getattr(its, field)))) / max(size, 1e-300)
             for one, its in pairs
@@ -311,7 +312,7 @@ class Compared:
         """
         known = self._shifts.size
         for run in (self.ours, self.theirs):
-            for landing in landings_of(self.system, run.events[known : known + 1]):
+            for landing in landings_of(self.system, run.events[: known + 1]):
                 time, closing = landing.before.time, float(landing.comes @ landing.n)
                 place = grown.widened(self.bound, self._steps, grown.at(np.array([time]))) * self.sizes["position"]
                 if not landing.jolted and closing**2 < 2 * landing.pull * float(place[0]):
