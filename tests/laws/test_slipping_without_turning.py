@@ -15,6 +15,7 @@ import trundle as tr
 from trundle.mechanics.algebra import ZERO
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.mechanics.scalars import namespace
+from trundle.solve.transitions import at_start
 
 RADIUS, MASS, K, G, OFFSET = 0.05, 0.2, 0.4, 9.80665, 2e-3
 J = K * MASS * RADIUS**2
@@ -156,3 +157,38 @@ def test_a_body_that_slips_fast_in_a_narrow_bowl_stays_on_it() -> None:
     system = tr.RollingSystem(tr.Body.sphere("4 cm", "0.275 kg", 0.23), bowl, (driven,))
     start = system.place((0.0122, -0.1955), angular_velocity=(0.0, 0.0, 0.0))
     followed(system, start, "runge-kutta", duration=1.6, every=0.02)
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        tr.Fixed(),
+        tr.Spin(3.0),
+        tr.SpinBy("2*t + sin(5*t)"),
+        tr.Rock(amplitude=0.3, rate=7.0, phase=0.4),
+        tr.Wobble(3.5, 0.1),
+        tr.FreeAxle(inertia=0.02),
+    ],
+    ids=lambda one: type(one).__name__,
+)
+@pytest.mark.parametrize(
+    "surface", [tr.Plane(), tr.Bowl(0.7), tr.EllipsoidalBowl((0.7, 0.6, 0.5))], ids=lambda one: type(one).__name__
+)
+@pytest.mark.parametrize("slips", [False, True])
+def test_how_fast_turning_over_a_moving_support_shrinks(surface: tr.Surface, motion: tr.Motion, slips: bool) -> None:
+    """The support turns, too, and where it bends, or turns about, so does the normal."""
+    support = tr.Support(surface, motion=motion, friction=0.3)
+    system = tr.RollingSystem(EGG, support, (tr.RollingResistance(OFFSET),))
+    given: Any = {"angular_velocity": (3.0, -2.0, 4.0), "velocity": (0.5, 0.2) if slips else "rolling"}
+    now = at_start(system, system.place((0.05, 0.02), attitude=(0.3, 0.2, 0.1), **given))
+    assert type(now.law).__name__ == ("SlippingLaw" if slips else "RollingWithResistance")
+    y, step = list(map(float, now.state_vector)), 1e-4
+    behind, ahead = (
+        now.law.shrinking(system, now.time + h, now.law.rk4_step(system, now.time, y, h), "stop").array()
+        for h in (-step, step)
+    )
+    n = now.law.unpack(system, now.time, y).contact.normal.array()
+    slope = (ahead - behind) / (2 * step)
+    along = slope - n * (n @ slope)
+    found = now.law.shrinking_rate(system, now.time, y, "stop").array()
+    assert np.abs(found - along).max() <= 1e-4 * np.abs(along).max()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import tomli_w
 
 import trundle as tr
+from trundle.solve import runge_kutta, taylor
 from trundle.solve.dense import Dense
 from trundle.solve.methods import Method
 from trundle.solve.patience import Patience
@@ -747,6 +749,29 @@ def test_what_comes_off_while_it_spins_fast_is_no_longer_pressed_on() -> None:
         run={"duration": 2.0, "every": 0.02, "method": "runge-kutta"},
     )
     assert sum(event.kind == "lift" for event in run.events) > 5
+
+
+def test_a_cylinder_that_stops_turning_over_a_table_that_rocks_stops_at_one_instant() -> None:
+    # Where its turning has all but ended it goes on straight, by its rate over a table that speeds up itself.
+    run = passes(
+        body={"kind": "cylinder", "radius": 0.098414, "mass": 0.0181838},
+        support={
+            "kind": "plane",
+            "motion": {"kind": "rock", "amplitude": -0.220624, "rate": 13.6622, "phase": "-90 deg"},
+        },
+        loads=[
+            {"kind": "rolling-resistance", "offset": 5.92597e-05},
+            {"kind": "force", "value": [0.00448208, 0.0, -0.0826896]},
+        ],
+        start={"position": [-0.193119, 0.0], "time": 1.8609},
+        run={"duration": 2.0, "every": 0.00262831},
+    )
+    finer = partial(runge_kutta.solve, tolerance=1e-13)
+    found = [
+        [event.time for event in solve(run.system, run.start, np.linspace(1.8609, 3.0, count)).events][:5:2]
+        for solve, count in ((finer, 7), (taylor.solve, 7), (taylor.solve, 50), (taylor.solve, 333))
+    ]
+    np.testing.assert_allclose(found[1:], [found[0]] * 3, rtol=0, atol=1.5e-13)
 
 
 def test_a_rounding_of_the_arm_turns_a_body_that_is_light_to_turn() -> None:

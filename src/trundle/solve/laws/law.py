@@ -28,7 +28,6 @@ Rates = Callable[[float, Sequence[float]], Sequence[float]]  # of time and state
 _SHORT_OF_IT = 1e-6
 AN_INSTANT = 3e-15  # s: what ends in less has ended, for the terms of its series are greater than any float
 CORNER = "corner"  # with which the names of events begin at which the same law goes on
-_SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that change as what shrinks to nothing there
 
 
 class Law:
@@ -213,14 +212,18 @@ class Law:
         )
 
     def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
-        """Return how fast that changes, m/s² or rad/s²; of Ω̇ only the part along the support."""
+        """Return how fast that changes, m/s² or rad/s²; of how it turns only the part along the support."""
         plain = [as_float(number) for number in numbers]
-        rate = Vector(*(as_float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
-        if stop == "stop":
-            p, q, _, _, coordinates = self.split(plain)
-            n = contact_at(system, time, p, q, coordinates).normal
-            rate = rate - n * rate.dot(n)
-        return rate
+        point, _, turning, rest, coordinates = self.split([as_float(rate) for rate in self.rates(system, time, plain)])
+        if stop == "grip":
+            return Vector(*rest[:3])
+        p, q, Omega, _, own = self.split(plain)
+        contact = contact_at(system, time, p, q, own)
+        n, support = contact.normal, contact.support
+        axle = support.axle * coordinates[-1] if system.support.motion.free else ZERO
+        n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (point - support.material_velocity(p))
+        rate = turning - support.angular_acceleration - axle - n_rate * n.dot(Omega - support.angular_velocity)
+        return rate - n * rate.dot(n)
 
     def moment(self, system: RollingSystem, at: ContactState, rates: Sequence[Scalar]) -> float:
         """Return a time in which a motion with these rates changes, s: at most that of the body.
