@@ -7,7 +7,7 @@ from tests.tolerances import SOLVER
 import trundle as tr
 from trundle.mechanics.algebra import Vector
 from trundle.scenario import files
-from trundle.solve import phases
+from trundle.solve import phases, taylor
 from trundle.solve.methods import METHODS, Method
 from trundle.solve.patience import Patience
 
@@ -235,3 +235,16 @@ def test_events_are_met_to_the_last_digit_of_the_clock(name, begin):
     run = tr.Scenario.read(tables | {"start": tables["start"] | {"time": begin}}, name).run()
     assert run.events
     assert run.card()["events at their instants"].passed
+
+
+@pytest.mark.parametrize("tilt", [0.014399, -0.0144, 0.01])
+def test_slip_that_goes_straight_ends_at_one_instant_however_it_is_sampled(tilt):
+    """What rounding leaves of its slip across its way has no part in when a hoop grips."""
+    pytest.importorskip("heyoka")
+    table = tr.Support(tr.Plane(), motion=tr.Tilt(tilt), friction=0.052728)
+    system = tr.RollingSystem(tr.Body.hoop(0.0111296, 0.0943819), table)
+    start = system.place((0.056892, -0.183116), (-0.768696, 0.0, -1.06366), height=0.0370918, time=-1.47176)
+    found = [taylor.solve(system, start, np.linspace(-1.47176, 0.2, count)).events for count in (3, 10, 30, 86, 200)]
+    assert {tuple(event.kind for event in events) for events in found} == {("land", "grip")}
+    times = [events[1].time for events in found]
+    assert max(times) - min(times) <= 1e-14

@@ -386,10 +386,10 @@ def _come_to_it(system: RollingSystem, law: Law, at: ContactState, numbers: Any,
     """Go on straight from where slip or turning has all but ended to where it has ended."""
     y, time = [as_float(number) for number in numbers], at.state.time
     v = law.shrinking(system, time, numbers, stop)
-    length = v.norm()
-    if length > 1e-3 * _least(system, at, stop):
-        closing = -v.dot(law.shrinking_rate(system, time, y, stop)) / length
-        wait = length / closing if closing > 0 else 0.0
+    if v.norm() > 1e-3 * _least(system, at, stop):
+        rate = law.shrinking_rate(system, time, y, stop)
+        # To where it is least: what rounding leaves of it across its way never ends.
+        wait = max(0.0, -v.dot(rate) / max(rate.dot(rate), 1e-300))
         rates = law.rates(system, time, y)
         at = law.unpack(system, time + wait, [number + wait * rate for number, rate in zip(y, rates, strict=True)])
     Omega = at.Omega if stop == "grip" else unturned(at.contact, at.Omega)
