@@ -321,6 +321,37 @@ def test_what_a_run_has_had_compiled_is_there_for_each_later_stretch(
     assert np.array_equal(scenario.run().samples.position, run.samples.position)
 
 
+@pytest.mark.parametrize("rate", [0.5, -2.0])
+@pytest.mark.parametrize("tolerance", [1e-13, 1e-12, 1e-9])
+@pytest.mark.parametrize("to_compile", [0.0, 1e30])
+def test_an_axle_that_a_dry_bearing_stops_is_still_then(
+    to_compile: float, tolerance: float, rate: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """I ω̇ = −τ ω/√(ω² + b²): t = I (F(ω₀) − F(ω))/τ, F = √(ω² + b²) + b ln(ω/(b + √(ω² + b²))), b = 0.01 rad/s.
+
+    It dies out 400 times a second in the end: were steps as long as the motion alone allows, the rate would tremble.
+    """
+    monkeypatch.setattr(runge_kutta, "TO_COMPILE", (to_compile, 0.0))
+    inertia, torque, ease = 0.002, 0.008, 0.01
+    axle = tr.FreeAxle(inertia, rate=rate, bearing_torque=torque, below=ease)
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=axle, friction=0.0))
+    run = tr.simulate(
+        system, system.place((0.1, 0.0), (0.0, 0.1)), 2.0, 0.01, method="runge-kutta", tolerance=tolerance
+    )
+    found = run.samples.support_coordinates[:, -1] / rate * abs(rate)
+
+    def F(w: Any) -> Any:
+        root = np.hypot(w, ease)
+        return root + ease * np.log(w / (ease + root))
+
+    turning = found > 1e-5 * abs(rate)
+    wanted = inertia * (F(abs(rate)) - F(found[turning])) / torque
+    np.testing.assert_allclose(wanted, run.samples.time[turning], rtol=0, atol=1e4 * tolerance + 1e-12)
+    assert turning.sum() > 10
+    assert np.abs(found[run.samples.time > 1.5]).max() < 1e-13
+    assert run.card().passed
+
+
 HIDDEN = """
 import sys
 sys.modules["heyoka"] = None

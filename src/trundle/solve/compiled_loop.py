@@ -136,11 +136,11 @@ def _step(
 def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, found: Any) -> Any:
     """Take steps until there are as many as asked for, or the end or one that may hold an event is come to.
 
-    Numbers: from when times count, the time, the end, the next step, the tolerance. State: x = [t, *y, *numbers of the
-    law], y, ẏ, the carry, the least errors. Returns how many steps it took, and why no more; `numbers`, `state` and
-    `found` (times, states, polynomials, looks) are filled in.
+    Numbers: from when times count, the time, the end, the next step, the tolerance, the longest step. State: x = [t,
+    *y, *numbers of the law], y, ẏ, the carry, the least errors. Returns how many steps it took, and why no more;
+    `numbers`, `state` and `found` (times, states, polynomials, looks) are filled in.
     """
-    begin, t, end, step, tolerance = numbers
+    begin, t, end, step, tolerance, longest = numbers
     x, y, f, carry, least = state
     a, c, e3, e5, d, looks = tables
     times, starts, terms, values = found
@@ -149,7 +149,7 @@ def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, 
     while count < len(starts) and why == FULL:
         _copy(f, k[0])
         shortest, rejected = 10 * (np.nextafter(t, np.inf) - t), False
-        step = max(step, shortest)
+        step = max(min(step, longest), shortest)
         while True:
             if not step >= shortest:
                 numbers[1], numbers[3] = t, step

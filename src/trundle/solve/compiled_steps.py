@@ -104,13 +104,17 @@ class CompiledDOP853:
         Relative.
     least : array
         Absolute.
+    longest : float
+        Step, s.
     """
 
-    def __init__(self, law: CompiledLaw, begun: Any, begin: float, tolerance: float, least: Array) -> None:
+    def __init__(
+        self, law: CompiledLaw, begun: Any, begin: float, tolerance: float, least: Array, longest: float = np.inf
+    ) -> None:
         self.law, self.begin, self.end = law, begin, float(begun.t_bound)
         self.t, self.y, self.f = float(begun.t), np.array(begun.y), np.array(begun.f)
         self.step_size, self.tolerance = float(begun.h_abs), tolerance
-        self.least, self.carry = least, np.zeros_like(self.y)
+        self.least, self.carry, self.longest = least, np.zeros_like(self.y), longest
 
     def __iter__(self) -> Iterator[Steps]:
         """Go on to the end, or to where no step is possible: then `t` is short of it."""
@@ -118,7 +122,7 @@ class CompiledDOP853:
         x, values = np.array([0.0, *self.y, *self.law.values]), np.empty((LOOKS, self.law.count))
         while self.t < self.end:
             times, starts, terms = np.empty(_AT_ONCE + 1), np.empty((_AT_ONCE, size)), np.empty((_AT_ONCE, 7, size))
-            numbers = np.array([self.begin, self.t, self.end, self.step_size, self.tolerance])
+            numbers = np.array([self.begin, self.t, self.end, self.step_size, self.tolerance, self.longest])
             state, found = (x, self.y, self.f, self.carry, self.least), (times, starts, terms, values)
             count, why = _loop()(self.law.rates, self.law.event_functions, numbers, state, tables(), found)
             self.t, self.step_size = float(numbers[1]), float(numbers[3])

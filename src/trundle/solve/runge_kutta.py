@@ -16,6 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..errors import SolverError
+from ..mechanics.duals import Dual, has_duals, slopes_of, values_of
 from ..mechanics.system import RollingSystem, State
 from . import corners, phases
 from .compiled_steps import LOOKS, LOW, CompiledDOP853, StuckError, available, places
@@ -41,6 +42,9 @@ _CLOSE = 1e-9  # share of the time by which a step may begin before an instant a
 _BRIEF = 1e5  # steps of a law that mostly holds for an instant only: some seconds
 _LOOSELY = 1e-5  # share of what a step has gone, to which a loose stop is looked for
 _FIRST_STEP = 1e-12  # s
+_OF_A_VECTOR = 1e-3  # share of a vector's size that no error of a part of it is smaller than
+_OF_A_BRIEF = 0.03  # the same of a law that works slopes out by differences: less is their rounding
+_STABLE = 3.0  # times as long as what dies out takes: half of where the method becomes unstable
 _RATES = 15  # evaluations of the law in a step of SciPy's
 OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
 _OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
@@ -211,14 +215,15 @@ def _integrated(
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
+    longest = _longest_step(system, begin)
     patience = Patience(begin, begin + end, **_PATIENCE | {"steps": _most_steps(law)})
     try:
         at = law.unpack(system, begin, y0)
-        least = tolerance * _scale(y0, at.arm, at.scale(system))
+        least = tolerance * _scale(y0, at.arm, at.scale(system), _OF_A_BRIEF if law.brief else _OF_A_VECTOR)
         least[y0.size - law.unwatched :] = np.inf
 
         def onward(since: float, y: Array, until: float) -> Iterator[Path]:
-            paths = _paths(law, traced, begin, since, y, until, tolerance, least, taken)
+            paths = _paths(law, traced, begin, since, y, until, tolerance, least, taken, longest)
             return _watched(paths, patience, progress, begin)
 
         # What is briefly followed is handed on: no finer than the clock shows its end.
@@ -249,6 +254,7 @@ def _paths(
     tolerance: float,
     least: Array,
     taken: Taken,
+    longest: float,
 ) -> Iterator[Path]:
     """Take steps to the end; those of a law that is stiff, and the first of any other, one by one."""
     from scipy.integrate import DOP853, Radau
@@ -269,13 +275,28 @@ def _paths(
     if t < end:
         if law.lasts < end - t:
             given["first_step"] = law.lasts
-        stepper = DOP853(rates, t, y, end, **given)
+        stepper = DOP853(rates, t, y, end, max_step=longest, **given)
         compiles = traced.compiled is not None and available()
         to_come = _StepsToCome(law, traced, begin, stepper, taken)
         yield from _one_by_one(stepper, to_come.worth_compiling if compiles else lambda: False)
         if stepper.status == "running" and traced.compiled is not None:
             taken.compiled.add(law.identity)
-            yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)
+            yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least, longest)
+
+
+def _longest_step(system: RollingSystem, time: float) -> float:
+    """Return how long a step may be beside a bearing that ends an axle's turning, s.
+
+    At steps that its dying out alone would let grow an explicit method is all but unstable, and leaves the rate
+    trembling by a ten-millionth of what it was.
+    """
+    motion = system.support.motion
+    if not motion.free:
+        return math.inf
+    motion = values_of(motion) if has_duals(motion) else motion
+    still = (*[0.0] * (len(motion.coordinates) - 1), Dual(0.0, (1.0,)))
+    damped = -slopes_of(motion.axle_torque(time, still), 1)[0] / motion.inertia
+    return _STABLE / damped if damped > 0 else math.inf
 
 
 def _one_by_one(stepper: Any, until: Callable[[], bool]) -> Iterator[Path]:
@@ -351,14 +372,14 @@ def _most_steps(law: Law) -> float:
     return _BRIEF if law.brief else float(_PATIENCE["steps"])
 
 
-def _scale(y0: Array, arm: float, speed: float) -> Array:
+def _scale(y0: Array, arm: float, speed: float, share: float) -> Array:
     """Return against what an error of each number is small or not: its own size, or a share of its vector's.
 
     What begins is small, not its rate's rounding: that is a share of the body's size, and of all accelerations at hand.
     """
     place, turning = max(_size(y0[:3]), arm), max(_size(y0[7:10]), 0.1 * speed / arm)
     rest = max(1e-3 * _size(y0[10:]), 1e-4 * speed)
-    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * y0.size]
+    least = [*[share * place] * 3, *[1.0] * 4, *[share * turning] * 3, *[rest] * y0.size]
     return np.maximum(np.abs(y0), least[: y0.size])
 
 

@@ -16,7 +16,7 @@ from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .acting import acting, cross, exerted, rotated, unturning
-from .bounds import A_ROUNDING, Array, blur_of, largest
+from .bounds import A_ROUNDING, SOLVER, Array, blur_of, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
@@ -342,15 +342,20 @@ class _Windows:
         # Of a force that presses on past the axle, and of a slope, no smaller moment is told from none.
         pressing = _PRODUCT * largest(arm) * largest(R) / self.bound
         fastest = max(np.abs(rate).max(), largest(at.angular_velocity))  # a step's error is a share of it
-        sharp = motion.inertia * _ROUNDING * fastest / self.half / self.bound
+        sharp = motion.inertia * self._stepped * fastest / self.half / self.bound
         steady = motion.inertia * np.abs(rate).max() * self.rate
         size = max(*(float(np.abs(part).max()) for part in parts), steady, pressing + sharp)
         law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
         # A step's error is a share of the largest number of the state, and |q| is 1.
         angle = 1 + float(np.abs(at.support_coordinates[:, -2]).max()) + np.abs(rate).max() * self._clock
         turned = np.abs(change[:, -2] - rate).max()
-        sharp = _ROUNDING * angle / self.half / self.bound
+        sharp = self._stepped * angle / self.half / self.bound
         return float(max(law, turned / max(np.abs(rate).max(), sharp, 1e-300)))
+
+    @property
+    def _stepped(self) -> float:
+        """What the error of a step makes of a slope, over half a window, as a share: no less than rounding does."""
+        return max(_ROUNDING, _SLOPE * self.bound / (100 * SOLVER))
 
     def _virtual_power(self) -> float:
         """Return the power of the reaction, as the motion shows it, over δV = −δΩ×ρ."""
