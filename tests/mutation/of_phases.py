@@ -93,7 +93,7 @@ PHASES = (
     Mutant(
         "grip 0.1 ms late",
         FOLLOWING,
-        "wait = length / closing if closing > 0 else 0.0",
+        "wait = max(0.0, -v.dot(rate) / max(rate.dot(rate), 1e-300))",
         "wait = 1e-4",
         "egg_grips_in_bowl",
     ),
