@@ -167,6 +167,7 @@ def test_a_power_that_is_recorded_is_the_power(power: float) -> None:
     recorded = tape.function([x**power])
     for value in (0.25, 1.0, 1.7, 30.0):
         assert recorded([value])[0] == pytest.approx(value**power, rel=1e-14)
+    assert tape.function([x ** np.float64(power), x ** np.int64(3)])([1.7]) == [recorded([1.7])[0], 1.7 * 1.7 * 1.7]
     with pytest.raises(TypeError):
         x**x
 

@@ -68,3 +68,15 @@ def test_what_is_let_go_beside_an_upright_wall_falls_along_it(
     fallen = np.outer(-9.80665 / 2 * run.samples.time**2, (0.0, 0.0, 1.0))
     np.testing.assert_allclose(run.samples.position, start.position + fallen, rtol=0, atol=1e-12)
     np.testing.assert_allclose(run.samples.orientation, np.tile(start.orientation, (7, 1)), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_friction_jams_a_rod_that_is_pressed_on_only_later(method: str) -> None:
+    """b, how a newton of N opens the contact, is 0.046/m at first, and falls as the rod turns."""
+    rod = tr.Body.ellipsoid(("5 mm", "5 mm", "50 cm"), mass="1 kg")
+    press = tr.Force((0.0, 0.0, "-5*t**2"))
+    system = tr.RollingSystem(rod, tr.Support(tr.Plane(), friction=1.0), loads=[press], gravity=0.0)
+    leans = (np.cos(0.25), 0.0, np.sin(0.25), 0.0)
+    dragged = system.place(velocity=(-1.0, 0.0), angular_velocity=(0.0, 0.0, 0.0), orientation=leans)
+    with pytest.raises(tr.SolverError, match=r"At t = 0\.18467\d* s friction all but jams the body"):
+        tr.simulate(system, dragged, 1.0, 0.02, method=method)

@@ -12,6 +12,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from typing import Any
 
 from ..mechanics.surfaces.splines import Pieces, evaluated
@@ -258,7 +259,7 @@ class Node:
         raise TypeError("What is recorded has no value to decide by: choose by `where` of `scalars.namespace`.")
 
     def __pow__(self, power: float) -> Any:
-        if not isinstance(power, (int, float)):
+        if not isinstance(power, Real):
             return NotImplemented
         if power < 0:
             return 1.0 / self**-power

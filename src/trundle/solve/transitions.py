@@ -112,7 +112,8 @@ def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
         if lift is not None:
             advanced = law.rk4_step(system, stop.time, stop.state_vector.tolist(), lift - stop.time)
             return _lifted(system, law.unpack(system, lift, advanced))
-    if name.startswith(CORNER) or (name in ("grip", "stop") and _goes_on(system, law, at, stop)):
+    goes_on = name in ("grip", "stop") and _goes_on(system, law, at, stop)
+    if goes_on or name.startswith(CORNER) or (name == "jam" and not _jams(system, law, at, stop)):
         event_parameters = (*_floor(system, law, at), *_extras(system, law, at, stop.state_vector))
         return PhaseStart(law, at.state, list(stop.state_vector), event_parameters)
     if name == JOLT:
@@ -241,6 +242,17 @@ def _goes_on(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossi
         return True
     rate = law.shrinking_rate(system, at.state.time, stop.state_vector, name)
     return bool(left > 4 * AN_INSTANT * rate.norm())
+
+
+def _jams(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossing) -> bool:
+    """Tell whether friction all but jams the body.
+
+    Where slip has just begun and nothing presses the body on, a series says little of how friction would be directed
+    over the long steps of a free fall.
+    """
+    event_parameters = (*_floor(system, law, at), *_extras(system, law, at, stop.state_vector))
+    left = law.event_functions(system, stop.time, stop.state_vector.tolist(), event_parameters)["jam"]
+    return bool(value_of(left) < JAMS)
 
 
 def _least(system: RollingSystem, at: ContactState, stop: str) -> float:

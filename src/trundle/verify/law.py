@@ -308,8 +308,11 @@ class _Windows:
 
     @cached_property
     def _leverage(self) -> float:
-        """How many times as fast as what moves it the contact moves: of N, so many times rounding is left."""
-        return self._passing / max(sum(map(largest, self._speeds)), 1e-300)
+        """How many times as fast as what moves it the contact moves: of N, so many times rounding is left.
+
+        What rests does not move it, nor does rounding of its place.
+        """
+        return self._passing / max(sum(map(largest, self._speeds)), self._sharp * self.bound)
 
     @cached_property
     def _blurred(self) -> float:

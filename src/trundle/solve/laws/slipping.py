@@ -84,15 +84,11 @@ class SlippingLaw(Law):
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def _pressing(self, system: RollingSystem, now: Slipping, event_parameters: Numbers) -> dict[str, Scalar]:
-        """Return the normal force, and how it opens the contact where friction may turn that round.
-
-        Where nothing presses the body on, nothing jams it; and of how friction would be directed there, where slip
-        begins, a series says little over the long steps of a free fall.
-        """
+        """Return the normal force, and how it opens the contact where friction may turn that round."""
         found = {"lift": now.normal_force + self._floor(event_parameters)[0]}
         if self.held:
             found["start"] = left_of_resistance(system, found["lift"], now.holding)
-        if not (self.weightless or is_zero(system.support.friction)):
+        if not is_zero(system.support.friction):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
 
