@@ -473,6 +473,19 @@ def test_series_show_the_data_in_their_units() -> None:
     assert height.get_ylabel() == "height\nabove start (mm)"
 
 
+@pytest.mark.parametrize("side", ["inside", "outside"])
+def test_a_contact_force_of_rounding_is_drawn_as_none_beside_the_weight(side: str) -> None:
+    wall = tr.Support(tr.Cylinder(0.355, side=side), friction=0.4)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.03, 0.1), wall)  # falls freely along it, whichever way it drifts
+    run = tr.simulate(system, system.place((-0.1, -0.05), velocity=(0.0, 0.1)), 0.6, 0.05)
+    largest = np.abs(run.data["contact_force"].values).max()
+    assert 0 < largest < 1e-12
+    axes = {ax.get_ylabel(): ax for ax in series_figure(run).axes}
+    (force,) = (ax for label, ax in axes.items() if label.startswith("contact"))
+    assert force.get_ylim()[1] > 1e6 * largest
+    assert not any(label.startswith("friction") for label in axes)
+
+
 def test_friction_offered_is_a_line_or_a_sentence() -> None:
     near, far = (series_figure(Run(tilt=math.radians(3.0), friction=mu)).axes[4] for mu in (0.2, 20.0))
     assert near.lines[-1].get_ydata()[0] == pytest.approx(0.2)

@@ -71,7 +71,7 @@ def quantities_of(run: Trajectory, facts: Facts) -> list[Series]:
             max(frequency, float(np.max(np.abs(Omega)))),
             _turning(Omega, facts),
         ),
-        *_forces(run, facts, time, support),
+        *_forces(run, facts, time, support, length * frequency**2),
     ]
     heights = _heights(run, facts, r, length)
     others = [*_slip(facts, time, support, panels[1].largest), *_lean(run, facts, support), *_support_rate(run)]
@@ -82,16 +82,17 @@ def _array(data: Any, name: str) -> Array:
     return np.asarray(data[name].values, dtype=float)
 
 
-def _forces(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Series]:
+def _forces(run: Trajectory, facts: Facts, time: Array, support: Any, acceleration: float) -> list[Series]:
+    """Return the contact force and the friction needed; of the weight, or of so large an acceleration, a share is none."""
     R = _array(support, "contact_force")
     coordinates = tuple(_array(support, name) for name in coordinate_variables(run))
     normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), coordinates).array()
     normal = np.broadcast_to(normal, R.shape)
     N = np.einsum("ni,ni->n", R, normal)
     f = np.linalg.norm(R - N[:, None] * normal, axis=1)
-    force = float(np.max(np.abs(R)))
+    force = run.system.body.mass * max(run.system.gravity, acceleration)
     lines = {"N, normal": N, "|f|, friction": f}
-    panels = [Series("contact\nforce", "force", force or 1.0, lines, from_zero=True)]
+    panels = [Series("contact\nforce", "force", force, lines, from_zero=True)]
     if float(np.max(N)) > NOTHING * force:
         pressed = np.where((NOTHING * force < N) & ~part_in(facts.stretches, FLIGHT, time), N, np.nan)
         name = "friction\nneeded, |f|/N"
