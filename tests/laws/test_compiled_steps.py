@@ -324,8 +324,9 @@ def test_what_a_run_has_had_compiled_is_there_for_each_later_stretch(
 @pytest.mark.parametrize("rate", [0.5, -2.0])
 @pytest.mark.parametrize("tolerance", [1e-13, 1e-12, 1e-9])
 @pytest.mark.parametrize("to_compile", [0.0, 1e30])
+@pytest.mark.parametrize("carried", [(), (tr.Shake((0.0, 0.0, 0.002), 20.0),)], ids=["alone", "shaken"])
 def test_an_axle_that_a_dry_bearing_stops_is_still_then(
-    to_compile: float, tolerance: float, rate: float, monkeypatch: pytest.MonkeyPatch
+    carried: tuple[tr.Motion, ...], to_compile: float, tolerance: float, rate: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """I ω̇ = −τ ω/√(ω² + b²): t = I (F(ω₀) − F(ω))/τ, F = √(ω² + b²) + b ln(ω/(b + √(ω² + b²))), b = 0.01 rad/s.
 
@@ -334,7 +335,8 @@ def test_an_axle_that_a_dry_bearing_stops_is_still_then(
     monkeypatch.setattr(runge_kutta, "TO_COMPILE", (to_compile, 0.0))
     inertia, torque, ease = 0.002, 0.008, 0.01
     axle = tr.FreeAxle(inertia, rate=rate, bearing_torque=torque, below=ease)
-    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=axle, friction=0.0))
+    table = tr.Support(tr.Plane(), motion=tr.Combined((*carried, axle)) if carried else axle, friction=0.0)
+    system = tr.RollingSystem(BALL, table)
     run = tr.simulate(
         system, system.place((0.1, 0.0), (0.0, 0.1)), 2.0, 0.01, method="runge-kutta", tolerance=tolerance
     )
