@@ -36,6 +36,16 @@ def test_right_data_with_noise_are_not_condemned(omega: float, tilt: float, part
             assert all(figure.bound > 0 for figure in checked.figures if figure.bound is not None)
 
 
+@pytest.mark.parametrize("sigma", [0.0, 1e-4])
+@pytest.mark.parametrize("samples", [12, 13, 14, 16, 17, 18, 19, 22, 23, 24])
+@pytest.mark.parametrize("parts", ["", "vw"])
+def test_so_many_samples_as_are_taken_are_looked_at(parts: str, samples: int, sigma: float) -> None:
+    omega, tilt = -3.49, 0.02
+    right = data(omega, tilt, duration=0.1 * (samples - 0.5), every=0.1, parts=parts)
+    assert len(right["t"]) == samples
+    assert tr.check(shaken(right, sigma, samples), system(omega, tilt)).answer != "fails"
+
+
 def test_the_bound_is_what_the_noise_leaves_open() -> None:
     omega, tilt = -3.49, 0.02
     right = filmed(omega, tilt)

@@ -23,6 +23,7 @@ _NARROWEST, _WIDEST, _WIDER = 11, 768, 1.6  # samples, and times from one width 
 _TRIED = 24  # windows
 _LOCAL = 96  # windows in which it is seen whether the noise is the same all along
 _NEIGHBOURS = 15  # of these that are taken to have the same
+_FREE = 7  # more samples in each than degrees
 _PLAINLY = 9.0  # times another variance: the noise is not the same all along
 _MEDIAN = 0.6  # degrees of freedom that a median keeps
 _TOGETHER = 4.0  # standard deviations by which that must stand out
@@ -147,8 +148,8 @@ def _alike(rest: Array, at: Polynomials, degree: int) -> float:
 
 def _shape(time: Array, values: Array, known: Known) -> tuple[Index, Array]:
     """Return how the noise varies along the samples, beside its usual size: 1 all along, unless it plainly does not."""
-    index, degree = _spread(time.size, _LOCAL), _DEGREES[-1]
-    width = min(degree + 7, time.size)
+    index, width = _spread(time.size, _LOCAL), min(_DEGREES[-1] + _FREE, time.size)
+    degree = width - _FREE
     each = _variances(_rest(polynomials(time, index, 0, degree, width, known), values), degree).max(axis=1)
     usual = float(np.median(each))
     if len(each) <= _NEIGHBOURS or usual == 0:
