@@ -315,6 +315,26 @@ def test_when_a_law_grows_singular_has_its_derivative(key: str, duration: float)
     assert float(found.event_time[-1, 0]) == pytest.approx((ends[0].time - ends[1].time) / 2e-5, rel=1e-7)
 
 
+@pytest.mark.parametrize("side", ["inside", "outside"])
+@pytest.mark.parametrize("kind", ["ring", "solid-sphere", "torus"])
+def test_a_fall_along_a_wall_depends_on_gravity_alone(kind: str, side: str) -> None:
+    """Nothing presses: z = z₀ − g t²/2, so that ∂z/∂g = −t²/2, ∂z/∂z₀ = 1, and nothing turns."""
+    body = {"kind": kind, "radius": 0.035, "mass": 0.2229} | ({"rim_radius": 0.01} if kind == "torus" else {})
+    tables = {
+        "body": body,
+        "support": {"kind": "cylinder", "radius": 0.355, "side": side, "friction": 0.4},
+        "start": {"position": [-0.1, -0.05]},
+        "run": {"duration": 0.6, "every": 0.1},
+    }
+    names = ["gravity", "start.position[1]", "body.mass", "body.radius", "support.friction"]
+    found = tr.sensitivities(tr.Scenario.read(tables), names)
+    assert found.passed, str(found)
+    time = found.time
+    height = np.stack([-(time**2) / 2, np.ones_like(time), *[np.zeros_like(time)] * 3], axis=1)
+    assert np.abs(found.position[:, 2] - height).max() < 1e-12
+    assert np.abs(found.angular_velocity).max() < 1e-12
+
+
 def test_a_landing_whose_slip_settles_at_once_has_slopes() -> None:
     """On a table a thousand times as light its direction stands still, and only the slopes tell how fast it settles."""
     tables = {

@@ -341,7 +341,7 @@ def _opens(system: RollingSystem, at: ContactState) -> bool:
 
     What only seems to press or to pull on a weightless body, rounding, stays as small as it is.
     """
-    alone, floor = _fly(at), _FLOOR * at.forces(system) / float(system.body.mass)
+    alone, floor = _fly(at), _FLOOR * at.forces(system) / as_float(value_of(system.body.mass))
     wait = alone.law.moment(system, at, alone.law.rates(system, alone.time, alone.state_vector))
     opening = 0.0
     for share in _LOOKS:

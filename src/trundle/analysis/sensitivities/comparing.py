@@ -20,7 +20,7 @@ _ALONE = 1e-2  # in SI, a number that is 0 where no other has its unit
 _ENOUGH = 1e-6  # share of a derivative by which a difference of runs may be off
 _SURE = 10.0  # times how far two differences with other steps are apart
 _VAGUE = 1e-2  # share of a derivative from which on a difference tells nothing
-_QUANTITIES = ("position", "velocity", "angular_velocity")
+_STILL = 1e-10  # share of a length in the time of the run: what moves no faster is at rest but for rounding
 
 
 @dataclass(frozen=True)
@@ -115,18 +115,27 @@ def _compared(
     if not everywhere.any():
         return none
     apart, sure = 0.0, 0.0
-    for name in _QUANTITIES:
+    for name, usual in _sizes(here).items():
         wide, narrow = (
             (getattr(up, name)[:size] - getattr(down, name)[:size])[everywhere] / (2 * part)
             for (up, down), part in ((far, 1.0), (near, 0.5))
         )
         found = followed.slopes[name][first:][:size][everywhere][:, :, usable] @ np.array([steps[j] for j in usable])
-        least = max(1e-3 * share * float(np.abs(getattr(here, name)).max()), 1e-300)
+        least = 1e-3 * share * usual
         of_runs = (4 * narrow - wide) / 3
         apart = max(apart, float(np.abs(found - of_runs).max()) / max(float(np.abs(found).max()), least))
         # Of its own size: where runs part as far as they can, differences are nothing beside a derivative that grows.
         sure = max(sure, float(np.abs(wide - narrow).max()) / 3 / max(float(np.abs(of_runs).max()), least))
     return Agreement(apart, sure, int(everywhere.sum()), left_out)
+
+
+def _sizes(at: Samples) -> dict[str, float]:
+    """Return of what size the compared quantities are: what does not turn is off by a share of what would move it so."""
+    arm = float(np.linalg.norm(at.position - at.contact, axis=1).max())
+    place, V, turning = (float(np.abs(part).max()) for part in (at.position, at.velocity, at.angular_velocity))
+    length = max(place, arm)
+    speed = max(V, turning * arm, _STILL * length / max(float(np.ptp(at.time)), 1e-300))
+    return {"position": length, "velocity": speed, "angular_velocity": speed / arm}
 
 
 def _size(key: Key, wanted: Sequence[Key]) -> float:
