@@ -130,7 +130,7 @@ def _compared(
 
 
 def _sizes(at: Samples) -> dict[str, float]:
-    """Return of what size the compared quantities are: what does not turn is off by a share of what would move it so."""
+    """Return of what size the compared quantities are; beside V, an Ω of V/|ρ| is."""
     arm = float(np.linalg.norm(at.position - at.contact, axis=1).max())
     place, V, turning = (float(np.abs(part).max()) for part in (at.position, at.velocity, at.angular_velocity))
     length = max(place, arm)

@@ -83,7 +83,7 @@ def _array(data: Any, name: str) -> Array:
 
 
 def _forces(run: Trajectory, facts: Facts, time: Array, support: Any, acceleration: float) -> list[Series]:
-    """Return the contact force and the friction needed; of the weight, or of so large an acceleration, a share is none."""
+    """Return the contact force and the friction needed; a small share of the weight, or of m times this, is none."""
     R = _array(support, "contact_force")
     coordinates = tuple(_array(support, name) for name in coordinate_variables(run))
     normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), coordinates).array()
