@@ -22,7 +22,11 @@ def main(words: list[str] | None = None) -> int:
     """Try out scenarios, print the table and the causes; return 1 where some ended badly, else 0."""
     asked = _arguments(words)
     with tempfile.TemporaryDirectory(prefix="fuzz-") as working:
-        found = list(_told(outcomes(_cases(asked), Path(working), asked.workers, asked.limit), asked))
+        found = list(
+            _told(
+                outcomes(_cases(asked), Path(working), asked.workers, asked.limit, with_command=asked.commands), asked
+            )
+        )
     found.sort(key=lambda one: (list(CLASSES).index(one.name), one.seed))
     if asked.one:
         _show(found[0])
@@ -45,6 +49,8 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--folder", type=Path, help="For the table and the scenarios that ended badly.")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="Processes at a time.")
     parser.add_argument("--limit", type=float, default=LIMIT, help="CPU seconds for a scenario and its card.")
+    said = "Try one of the other commands, too, on what passes."
+    parser.add_argument("--commands", action=argparse.BooleanOptionalAction, default=True, help=said)
     asked = parser.parse_args(words)
     asked.classes = asked.classes or list(CLASSES)
     if asked.one and len(asked.classes) != 1:

@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import sys
+import tempfile
 import time
 import traceback
 import warnings
@@ -66,7 +67,9 @@ class Outcome:
     text: str = ""
 
 
-def try_out(name: str, seed: int, say: Callable[..., None], limit: float = LIMIT) -> None:
+def try_out(
+    name: str, seed: int, say: Callable[..., None], limit: float = LIMIT, *, with_command: bool = False
+) -> None:
     """Draw scenarios of a class until one runs, and say what comes of it.
 
     Parameters
@@ -77,21 +80,25 @@ def try_out(name: str, seed: int, say: Callable[..., None], limit: float = LIMIT
         Takes what is known so far as keywords: whoever kills this process knows it then.
     limit : float
         CPU seconds for a scenario and its card: what takes longer has hung, for whoever waits.
+    with_command : bool
+        Whether one of the other commands is tried on it, too.
     """
     import tomli_w
 
     from trundle.errors import TrundleError
 
     from .classes import candidate, mended
+    from .commands import drawn
     from .drawing import seeded
 
     random, refusals = seeded(name, seed), dict[str, int]()
+    command = drawn(seeded("command", seed)) if with_command else ""
     tables = candidate(name, random)
     for _ in range(_CANDIDATES):
         text = tomli_w.dumps({"title": f"{name} {seed}", **{key: tables[key] for key in tables if key != "title"}})
         say(text=text, begins=True)
         try:
-            run_as_a_user_does(text, say, limit)
+            run_as_a_user_does(text, say, limit, command)
         except TrundleError as error:
             kind = type(error).__name__
             refusals[kind] = refusals.get(kind, 0) + 1
@@ -101,8 +108,8 @@ def try_out(name: str, seed: int, say: Callable[..., None], limit: float = LIMIT
         return
 
 
-def run_as_a_user_does(text: str, say: Callable[..., None], limit: float = LIMIT) -> None:
-    """Run a scenario and make its card; an error by which trundle refuses it is the caller's."""
+def run_as_a_user_does(text: str, say: Callable[..., None], limit: float = LIMIT, command: str = "") -> None:
+    """Run a scenario and make its card, and try a command on it; an error by which it is refused is the caller's."""
     import trundle as tr
 
     begun = time.process_time()
@@ -127,9 +134,26 @@ def run_as_a_user_does(text: str, say: Callable[..., None], limit: float = LIMIT
     took = [ran - begun, time.process_time() - ran]
     if sum(took) <= limit:
         say(outcome=PASSED)
+        if command:
+            _try_command(command, text, run, say)
         return
     said = f"run {took[0]:.1f} s, card {took[1]:.1f} s, {len(run.events)} events ({happened})"
     say(outcome=HANG, cause=f"{run.method}: passed, but late", detail=said)
+
+
+def _try_command(command: str, text: str, run: Any, say: Callable[..., None]) -> None:
+    """Try a command on what has passed; it may refuse it."""
+    import trundle as tr
+
+    from .commands import is_wrong, status_of
+
+    say(begins=True, text=f"# trundle {command}\n{text}")
+    try:
+        status = status_of(command, text, run)
+    except tr.TrundleError:
+        return
+    if is_wrong(command, status, run):
+        say(outcome=FAILED, cause=f"trundle {command}", detail=f"status {status}")
 
 
 def _general(text: str) -> str:
@@ -182,6 +206,7 @@ class Child:
         errors = os.open(self.folder / "stderr", os.O_WRONLY | os.O_CREAT, 0o600)
         os.dup2(errors, 2)
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        tempfile.tempdir = str(self.folder.parent)  # so that nothing is left behind by what is killed
         stack = (self.folder / "stack").open("w")
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         faulthandler.register(signal.SIGPROF, file=stack, all_threads=False, chain=True)
@@ -272,11 +297,9 @@ def _warm_up() -> None:
     os.waitpid(compiling, 0)
 
 
-def _tried(case: tuple[str, int], limit: float, say: Callable[..., None]) -> None:
-    try_out(*case, say, limit)
-
-
-def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT) -> Iterator[Outcome]:
+def outcomes(
+    cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT, *, with_command: bool = False
+) -> Iterator[Outcome]:
     """Try out seeds of classes, some at a time.
 
     Parameters
@@ -289,6 +312,8 @@ def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit
         How many at a time.
     limit : float
         CPU seconds for a scenario.
+    with_command : bool
+        Whether one of the other commands is tried on each, too.
 
     Yields
     ------
@@ -305,7 +330,8 @@ def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit
             if case is None:
                 break
             slot = free.pop()
-            child = Child(partial(_tried, case, limit), folder / f"worker-{slot}", _HEARD_OUT * limit)
+            work = partial(try_out, *case, limit=limit, with_command=with_command)
+            child = Child(work, folder / f"worker-{slot}", _HEARD_OUT * limit)
             running[child.process] = (*case, child, slot)
         if not running:
             return

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from tests.fuzz import drawing, report
 from tests.fuzz.classes import CLASSES, candidate, shipped
+from tests.fuzz.commands import COMMANDS, status_of
 from tests.fuzz.leaves import Leaf, kind_of, leaves, tables_of, times
 from tests.fuzz.running import OUTCOMES, Outcome
 
@@ -257,6 +258,45 @@ def test_a_run_is_judged_as_its_user_would(monkeypatch: pytest.MonkeyPatch) -> N
     assert said["outcome"] == "card failed"
     assert said["cause"] == "exact: planted"
     assert said["detail"].startswith("FAIL planted 2 at most 1 (phases r;")
+
+
+def tried(command: str) -> dict[str, Any]:
+    """Return what is said of a command on a shipped scenario."""
+    from tests.fuzz.running import run_as_a_user_does
+
+    said: dict[str, Any] = {}
+    text = tr.Scenario.load("tilted-turntable").to_toml()
+    run_as_a_user_does(text, lambda *, begins=False, **known: said.update(known), command=command)  # noqa: ARG005
+    return said
+
+
+REFUSED = {"equilibria": "must be at rest", "export S run.": "`support.friction` must be given"}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_command_is_one_that_there_is(command: str) -> None:
+    scenario = tr.Scenario.load("tilted-turntable")
+    run = scenario.run(duration=2.0)
+    why = [words for begins, words in REFUSED.items() if command.startswith(begins) and "fmu" not in command]
+    try:
+        assert status_of(command, scenario.to_toml(), run) == 0
+    except tr.TrundleError as error:
+        assert [words in str(error) for words in why] == [True]  # noqa: PT017
+    else:
+        assert not why
+
+
+def test_a_command_that_breaks_or_finds_a_run_wrong_is_no_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: Any, **__: Any) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("trundle.analysis.statics.equilibria", broken)
+    with pytest.raises(ZeroDivisionError):
+        tried("equilibria S")
+    monkeypatch.setattr("trundle.analysis.checking.result.Check.answer", "fails")
+    said = tried("check R")
+    assert (said["outcome"], said["cause"]) == ("card failed", "trundle check R")
+    assert said["text"].startswith("# trundle check R\n")
 
 
 # --- what it reports ------------------------------------------------------------------------------------
