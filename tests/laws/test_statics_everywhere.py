@@ -114,3 +114,25 @@ def test_a_support_that_comes_round_is_still_rolled_half_round(surface: type, ra
     assert line is not None
     # At a place where it stays the body has turned by R/r ∓ 1 for each radian that the support has.
     assert line.high == pytest.approx(math.pi * (ratio + (1 if surface is tr.Dome else -1)), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("surface", "bottom"),
+    [
+        (tr.EllipsoidalBowl((0.45, 0.12, 0.11)), (0.0, 0.0)),
+        (tr.HeightField("-0.2*sqrt(1 - x**2 - y**2)"), (0.0, 0.0)),
+        (tr.HeightField("0.1*x - 0.1*log(0.2 + x) + y**2"), (0.8, 0.0)),
+        (tr.Revolution("-0.2*sqrt(0.09 - r**2)"), (0.0, 0.0)),
+        (tr.Bowl(0.3), (0.0, 0.0)),
+    ],
+    ids=lambda one: type(one).__name__,
+)
+def test_where_a_search_would_reach_beyond_the_surface_it_stays_on_it(
+    surface: tr.Surface, bottom: tuple[float, float]
+) -> None:
+    """A load that depends on where the body is has it searched about the start: ten radii to either side, here 0.5 m."""
+    heavier = tr.Potential("0.1*z")
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 0.1), tr.Support(surface), loads=(heavier,))
+    found = found_in_time(system, system.place((0.02, 0.01)))
+    places = np.array([one.contact[:2] for one in found])
+    assert np.hypot(*(places - bottom).T).min() < 1e-9

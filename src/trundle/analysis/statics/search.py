@@ -118,7 +118,10 @@ class Search:
         rows = []
         for du in spread[0]:
             for dv in spread[1]:
-                p = surface.point(u + float(du), v + float(dv))
+                try:
+                    p = surface.point(u + float(du), v + float(dv))
+                except (ArithmeticError, ValueError):  # the surface does not reach so far
+                    continue
                 rows += [Place(p, q).numbers for q in turns]
         return np.array(rows)
 
