@@ -130,7 +130,7 @@ def test_a_support_that_comes_round_is_still_rolled_half_round(surface: type, ra
 def test_where_a_search_would_reach_beyond_the_surface_it_stays_on_it(
     surface: tr.Surface, bottom: tuple[float, float]
 ) -> None:
-    """A load that depends on where the body is has it searched about the start: ten radii to either side, here 0.5 m."""
+    """Under a load that depends on where the body is, ten radii to either side are searched: 0.5 m here."""
     heavier = tr.Potential("0.1*z")
     system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 0.1), tr.Support(surface), loads=(heavier,))
     found = found_in_time(system, system.place((0.02, 0.01)))
