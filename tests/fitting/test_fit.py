@@ -293,6 +293,24 @@ def test_noise_is_estimated_where_it_is_not_given() -> None:
 # Edges
 
 
+@pytest.mark.parametrize("columns", ["xy", "xyz", "xyz vx vy vz wx wy wz qw qx qy qz"])
+@pytest.mark.parametrize("key", ["support.tilt", "support.motion.rate"])
+def test_a_run_of_ones_own_is_fitted_to_what_rounding_leaves(key: str, columns: str) -> None:
+    """Its spin, 0, is no better known than a rounding of its other turning: it does not outweigh all other columns."""
+    scenario = tr.Scenario.load("tilted-turntable")
+    run = scenario.run(duration=2.0)
+    given = {"position": "xyz", "velocity": ("vx", "vy", "vz"), "angular_velocity": ("wx", "wy", "wz")}
+    given |= {"orientation": ("qw", "qx", "qy", "qz")}
+    every = {name: run.data[one].values[:, i] for one, names in given.items() for i, name in enumerate(names)}
+    names = list(columns) if " " not in columns else [*"xyz", *columns.split()[1:]]
+    fit = tr.fit({"t": run.samples.time, **{name: every[name] for name in names}}, scenario, free=[key])
+    assert fit.judgement.good, str(fit)
+    found, truth = fit[key], scenario.support.tilt if key == "support.tilt" else scenario.support.motion.rate
+    assert abs(found.value - truth) <= max(5 * found.sigma, 1e-9 * truth)
+    assert 1e-17 < found.sigma < 1e-6 * truth
+    assert not fit.judgement.outliers
+
+
 def test_a_number_stops_at_its_limit() -> None:
     drag = scenario(body=ball(0.5), support=turntable(OMEGA), loads=[{"kind": "drag", "coefficient": 1e-3}])
     states = set()

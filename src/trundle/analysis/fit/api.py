@@ -18,7 +18,7 @@ from ...units import UNITS, to_si
 from .camera import Camera
 from .directions import Directions, echelon, taken
 from .first_guess import first_guess
-from .judging import judge
+from .judging import chi_square, judge
 from .lasting import lasting
 from .minimising import LOSSES, Minimum, look, minimise
 from .model import RunModel
@@ -323,7 +323,7 @@ def _scaled(problem: Problem, found: Minimum) -> Array:
         return found.covariance
     residual = problem.residual(found.values)
     freedom = residual.size - found.directions.basis.shape[1]
-    return np.asarray(found.covariance * (float(residual @ residual) / freedom if freedom > 0 else 1.0))
+    return np.asarray(found.covariance * (chi_square(problem, residual) / freedom if freedom > 0 else 1.0))
 
 
 def _told(problem: Problem, solved: _Solved, scenario: ScenarioFile, loss: str, *, cures: bool) -> Fit:

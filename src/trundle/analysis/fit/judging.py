@@ -105,7 +105,7 @@ class Judgement:
         said = []
         if self.allowed and self.chi_square > self.freedom + ENOUGH * float(np.sqrt(2.0 * max(self.freedom, 1))):
             said.append("residuals are larger than the noise, but no larger than the camera is accurate")
-        if self.excess < -ENOUGH:
+        if self.noise_known and self.excess < -ENOUGH:
             said.append(f"χ²/dof = {self.reduced:.3g}: the noise is less than was given, and the errors are too large")
         if self.outliers_named:
             some = ", ".join(f"row {one.row} ({one.column}, {one.off:+.1f}σ)" for one in self.outliers[:_MOST_ROWS])
@@ -122,7 +122,7 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
         borne = np.abs(residual) > _limit(count)
         residual = np.where(borne & (borne.sum() <= _FEW * count), 0.0, residual)
         fitted += int((residual == 0).sum())
-    chi, freedom = float(residual @ residual), count - fitted
+    chi, freedom = chi_square(problem, residual), count - fitted
     known = all(noise.known for noise in problem.noises)
     spread = np.sqrt(2.0 * max(freedom, 1)) * (1.0 if known else _OF_SCATTER)
     allowed = sum(_allowed(model, noise) for model, noise in zip(problem.models, problem.noises, strict=True))
@@ -141,9 +141,9 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
         z = np.full(seen.shape, np.nan)
         z[seen] = whole[at : at + size]
         at += size
-        typical = max(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), 1e-300)
+        typical = np.maximum(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), noise.rounding / noise.sigma)
         off_by = np.nanstd(z * noise.sigma, axis=0)
-        small = of_places(model.seen.columns) & (off_by <= model.accuracy)
+        small = (of_places(model.seen.columns) & (off_by <= model.accuracy)) | (off_by <= noise.rounding)
         for c in np.flatnonzero(~small):
             column = z[:, c][np.isfinite(z[:, c])]
             r, off = _memory(column)
@@ -152,10 +152,20 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
             runs = max(runs, _runs(column))
         far = np.argwhere(np.abs(np.nan_to_num(z)) > limit * typical)
         outliers += [
-            Outlier(i, int(model.seen.rows[row]), model.seen.columns[c], -float(z[row, c]) / typical) for row, c in far
+            Outlier(i, int(model.seen.rows[row]), model.seen.columns[c], -float(z[row, c] / typical[row, c]))
+            for row, c in far
         ]
     outliers.sort(key=lambda one: -abs(one.off))
     return Judgement(chi, freedom, float(excess), memory, memory_excess, runs, tuple(outliers), known, allowed)
+
+
+def chi_square(problem: Problem, residual: Array) -> float:
+    """Return χ²: of data without noise the residuals are rounding, which is no less than that."""
+    each = [
+        (noise.rounding / noise.sigma)[m.seen.known] for m, noise in zip(problem.models, problem.noises, strict=True)
+    ]
+    least = np.concatenate(each)
+    return float((residual**2).sum() + np.maximum(least**2 - residual[: least.size] ** 2, 0.0).sum())
 
 
 def _allowed(model: RunModel, noise: Noise) -> float:

@@ -170,6 +170,7 @@ class Noise:
     sigma: Array  # (n, c): standard deviation of each value
     # of a covariance between values: the lower Cholesky factor over all values that there are
     factor: Array | None = None
+    rounding: Array | float = 0.0  # (c,): below which nothing is believed of an estimated one
 
     def whiten(self, values: Array, seen: Array) -> Array:
         """Return rows (n, c, ...) where `seen` (n, c), in units of the noise, stacked."""
@@ -193,7 +194,8 @@ def noise_for(given: Any, seen: Observations) -> Noise:
     """
     shape = seen.values.shape
     if given is None:
-        return Noise(False, np.broadcast_to(np.maximum(scatter(seen), _least(seen)), shape))
+        least = _least(seen)
+        return Noise(False, np.broadcast_to(np.maximum(scatter(seen), least), shape), rounding=least)
     if isinstance(given, Mapping):
         missing = [name for name in seen.columns if name not in given]
         if missing:
@@ -214,8 +216,11 @@ def noise_for(given: Any, seen: Observations) -> Noise:
 
 
 def _least(seen: Observations) -> Array:
-    """Return the noise below which nothing is believed: a rounding of the largest value."""
-    return np.asarray(np.finfo(float).eps * 16 * np.maximum(np.nanmax(np.abs(seen.values), axis=0), 1e-30))
+    """Return the noise below which nothing is believed: a rounding of the largest value of a kind, along any axis."""
+    largest = np.nanmax(np.abs(seen.values), axis=0)
+    kinds = [COLUMNS[name] for name in seen.columns]
+    alike = [max(one for one, other in zip(largest, kinds, strict=True) if other == kind) for kind in kinds]
+    return np.asarray(np.finfo(float).eps * 16 * np.maximum(alike, 1e-30))
 
 
 def _positive(given: Any, kind: str | None, key: str) -> Any:
