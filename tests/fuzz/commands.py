@@ -86,7 +86,7 @@ def status_of(command: str, text: str, run: Any) -> int:
 
 
 def is_wrong(command: str, status: int, run: Any) -> bool:
-    """Tell whether a figure failed that should hold: only what rolls all the way is sure to pass a check, or to be fitted."""
+    """Tell whether a figure failed that should hold: of what does not roll all the way, a check or a fit may fail."""
     from trundle.cli import CARD_FAILED
     from trundle.solve.samples import ROLLING
 

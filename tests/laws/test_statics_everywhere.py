@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import trundle as tr
 
@@ -136,3 +137,29 @@ def test_where_a_search_would_reach_beyond_the_surface_it_stays_on_it(
     found = found_in_time(system, system.place((0.02, 0.01)))
     places = np.array([one.contact[:2] for one in found])
     assert np.hypot(*(places - bottom).T).min() < 1e-9
+
+
+@pytest.mark.parametrize(
+    "loads", [(), (tr.RollingCouple(4e-5),), (tr.RollingResistance(1e-4),)], ids=["alone", "couple", "resistance"]
+)
+@pytest.mark.parametrize("facing", [0.0, 50.0])
+def test_a_coin_on_its_edge_falls_over_whichever_way_it_faces(loads: tuple[tr.Load, ...], facing: float) -> None:
+    """It tips over its rim by (5/4) m R² β̈ = m g R β, and the contact stays: it does not turn on the spot."""
+    coin = tr.RollingSystem(tr.Body.disc(radius=0.0375, mass=0.4), tr.Support(tr.Plane()), loads=loads)
+    found = found_in_time(coin, coin.place(attitude=(f"{facing} deg", 0.8, 0.0)))
+    (one,) = found  # one family, of all headings and places
+    assert one.stability == "unstable"
+    couple = 4e-5 if loads and isinstance(loads[0], tr.RollingCouple) else 0.0
+    A = 1.25 * 0.4 * 0.0375**2
+    growth = (-couple / A + math.sqrt((couple / A) ** 2 + 4 * G * 0.8 / 0.0375)) / 2
+    assert math.isclose(one.modes[0].growth, growth, rel_tol=1e-9)
+    assert "tipping over its rim: a nudge grows" in str(one)
+    figure = found.plot()
+    assert figure.axes[0].get_xlabel() == ("angle tipped (°)" if facing else "distance rolled (cm)")
+    FigureCanvasAgg(figure).draw()
+
+
+def test_a_flat_ellipsoid_rests_on_either_pole_and_stands_on_its_equator() -> None:
+    system = tr.RollingSystem(tr.Body.ellipsoid((0.05, 0.05, 0.02), mass=0.1), tr.Support(tr.Plane()))
+    found = found_in_time(system, system.place(attitude=(0.3, 0.8, 0.0)))
+    assert sorted(one.stability for one in found) == ["stable", "stable", "unstable"]

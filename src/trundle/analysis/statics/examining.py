@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from ...mechanics.algebra import ZERO, Vector, point_inertia
-from ...mechanics.contact import roll
+from ...mechanics.contact import Contact, roll
 from ...mechanics.system import RollingSystem, State
 from . import rest
 from .line import Line
 from .result import Equilibrium
 from .search import Place
-from .stability import NOTHING, Mode, modes_of, stability_of
+from .stability import NOTHING, Mode, modes_of, on_the_spot, stability_of
 from .words import SPOT, direction_names
 
-ON_THE_SPOT = 1e-9  # radii for a radian: a mode that moves the contact less turns on the spot
+TIPS = 1e-9  # radii for a radian: a mode that moves the contact less tips the body over
 
 
 def examine(
@@ -42,8 +42,7 @@ def examine(
     first, second = system.support.surface.directions(p)
     turns = [first, second, contact.normal] if body_axis is None else [q.matrix() @ body_axis]
     modes = _modes(system, time, place, turns)
-    size = contact.offset.norm()
-    stability = stability_of(modes, ignore_pivot=ON_THE_SPOT * size)
+    stability = stability_of(modes, contact.normal)
     if line is not None and body_axis is not None and angle is not None and not line.flat:
         if angle in line.ledges:
             modes = tuple(replace(mode, rate=0j) for mode in modes)  # what is left of it is rounding
@@ -64,7 +63,7 @@ def examine(
         friction=friction,
         stability=stability,
         modes=modes,
-        moves=tuple(_name(system, mode, (first, second), size) for mode in modes),
+        moves=tuple(_name(system, mode, contact, (first, second)) for mode in modes),
         free=free,
         dimension=dimension,
         kinds=system.support.surface.coordinates,
@@ -104,12 +103,14 @@ def _roll(place: Place, n: Vector, axis: Vector) -> float:
     return math.atan2(mark.dot(axis.cross(n)), mark.dot(n))
 
 
-def _name(system: RollingSystem, mode: Mode, directions: tuple[Vector, Vector], size: float) -> str:
+def _name(system: RollingSystem, mode: Mode, contact: Contact, directions: tuple[Vector, Vector]) -> str:
     moves = Vector(*mode.moves)
     if system.body.shape.axis is not None:
         return "rolling"
-    if moves.norm() < ON_THE_SPOT * size:
+    if on_the_spot(mode, contact.normal):
         return SPOT
+    if moves.norm() < TIPS * contact.offset.norm():
+        return "tipping over its rim"
     shares = [abs(float(moves.dot(way))) / float(moves.norm()) for way in directions]
     names = direction_names(system)
     return next((name for name, share in zip(names, shares, strict=True) if share > 1 - 1e-6), "obliquely")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -85,12 +86,11 @@ def _curve(ax: Axes, result: Equilibria, shown: list[Equilibrium]) -> None:
     if line is None:
         return
     angles = line.angles[:: max(1, line.angles.size // 1440)]
-    distance, energy = line.distance(angles), line.energy(angles)
+    energy, (along, axis) = line.energy(angles), _along(line, angles)
     presses = _presses(line, angles)
     zero = min((float(line.energy(one.angle)) for one in shown), default=float(energy[presses].min(initial=0.0)))
-    along = unit_for(float(np.abs(distance).max()), "length")
     scale, name = _joules(float(np.ptp(energy)) or line.scale)
-    x, y = distance / along.scale, (energy - zero) / scale
+    x, y = along(angles), (energy - zero) / scale
     handles: dict[str, Any] = {}
     ax.plot(np.where(presses, x, np.nan), y, color=INK, lw=1.8, zorder=3)
     if not presses.all():
@@ -99,7 +99,7 @@ def _curve(ax: Axes, result: Equilibria, shown: list[Equilibrium]) -> None:
     for one in result.marked:
         style = STYLES[one.stability] if one.stands else PULLED
         label = one.stability if one.stands else "support would have to pull"
-        at = float(line.distance(one.angle)) / along.scale, (float(line.energy(one.angle)) - zero) / scale
+        at = float(along(one.angle)), (float(line.energy(one.angle)) - zero) / scale
         edge = {"mec": "white", "mew": 1.0} if one.stands else {}
         (handle,) = ax.plot(*at, ls="none", zorder=5, **{**style, **edge})
         handles.setdefault(label, handle)
@@ -107,12 +107,12 @@ def _curve(ax: Axes, result: Equilibria, shown: list[Equilibrium]) -> None:
         ax.set(ylim=(-1, 1), yticks=[0])
         ax.plot(x, y, color=GREEN, lw=5, alpha=0.35, zorder=2)
     ax.margins(x=0.02, y=0.14)
-    places = [float(line.distance(one.angle)) / along.scale for one in shown]
+    places = [float(along(one.angle)) for one in shown]
     if len(places) > 1 and np.ptp(places) < CROWDED * np.ptp(x):  # look closer
         low, high = min(places) - 1.5 * np.ptp(places), max(places) + 1.5 * np.ptp(places)
         seen = y[(x > low) & (x < high)]
         ax.set(xlim=(low, high), ylim=(seen.min() - 0.14 * np.ptp(seen), seen.max() + 0.14 * np.ptp(seen)))
-    ax.set_xlabel(f"distance rolled ({along.symbol})", labelpad=2)
+    ax.set_xlabel(axis, labelpad=2)
     ax.set_ylabel(f"{'energy' if result.conservative else 'work against the loads'} ({name})")
     if handles:
         names = list(handles)
@@ -126,6 +126,16 @@ def _curve(ax: Axes, result: Equilibria, shown: list[Equilibrium]) -> None:
             handletextpad=0.1,
             columnspacing=1.0,
         )
+
+
+def _along(line: Line, angles: Array) -> tuple[Callable[[Any], Any], str]:
+    """Return what is drawn along the axis, and its name: a body that tips over its rim rolls no way."""
+    most = float(np.abs(line.distance(angles)).max())
+    arm = float(rest.contact_at(line.system, line.time, *line.place(0.0)).offset.norm())
+    if most <= 1e-6 * arm * float(np.ptp(angles)):
+        return np.rad2deg, "angle tipped (°)"
+    unit = unit_for(most, "length")
+    return lambda angle: line.distance(angle) / unit.scale, f"distance rolled ({unit.symbol})"
 
 
 def _presses(line: Line, angles: Array) -> NDArray[np.bool_]:
@@ -211,8 +221,8 @@ def _page(line: Line, contact: Contact, q: Quaternion, force: Vector) -> _Page:
     up = up / up.norm()
     right = line.axis.cross(up)
     outline = _outline(line, q, contact.centre, right, up)
-    across = outline.dot(right)
-    return _Page(contact.point, right, up, float(across.max() - across.min()) / 2)
+    size = max(float(np.ptp(outline.dot(way))) / 2 for way in (right, up))  # a disc is a line from its edge
+    return _Page(contact.point, right, up, size)
 
 
 def _outline(line: Line, q: Quaternion, centre: Vector, right: Vector, up: Vector) -> Vector:
@@ -231,11 +241,10 @@ def _support(ax: Axes, page: _Page, line: Line, angle: float) -> None:
     p, _ = line.place(angles)
     path = page(p)
     now = [rest.contact_at(line.system, line.time, *line.place(end)) for end in (angles[0], angles[-1])]
-    if all(row.norm() == 0 for contact in now for row in contact.shape_operator.rows):  # straight on
-        along = path[-1] - path[0]
-        along = along / np.hypot(*along)
-        path = np.vstack([path[0] - 6 * along, path, path[-1] + 6 * along])
     into = -page.direction(rest.contact_at(line.system, line.time, *line.place(angle)).normal)
+    if all(row.norm() == 0 for contact in now for row in contact.shape_operator.rows):  # straight on
+        along = np.array([-into[1], into[0]])
+        path = np.vstack([path[0] - 6 * along, path, path[-1] + 6 * along])
     ax.fill(*np.vstack([path, (path + 4 * into)[::-1]]).T, color=TABLE, ec="none", zorder=0)
     ax.plot(*path.T, color=GREY, lw=1.6, zorder=1)
 

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 FOUND = 1e-12  # share of the scale below which the torque is nothing
 FREE = 1e-9  # share of the largest slope of the torque below which a direction is free
 SAME = 1e-6  # radii and radians: places nearer than this are one
+_WALKED_TO = 32  # places of a family
 _ROUNDS, _LONGEST = 50, 0.5  # Newton steps, and the longest of them, rad
 _ORIENTATIONS, _AROUND, _ACROSS = 24, 16, 5  # starts
 
@@ -81,10 +82,8 @@ class Search:
             good = good[np.argsort(np.linalg.norm(self._ways(good, self.start.numbers), axis=1), kind="stable")]
         families: list[Family] = []
         while len(good):
-            first = good[0]
-            joined = self._joined(good, first)
-            families.append(self._family([Place(*_place(row)) for row in good[joined]]))
-            good = good[~joined]
+            members, good = self._those_with(good[0], good)
+            families.append(self._family([Place(*_place(row)) for row in members]))
         return families, Place(*_place(rows[least])), float(share[least])
 
     @property
@@ -188,6 +187,22 @@ class Search:
         return rows
 
     # --- families -----------------------------------------------------------------------------------------
+
+    def _those_with(self, first: Array, places: Array) -> tuple[Array, Array]:
+        """Return the places of one family, the first of them first, and the others.
+
+        A walk straight towards one of them may end where the family bends away: so others of it are walked to as well.
+        """
+        members, towards = [], [first]
+        for _ in range(_WALKED_TO):
+            if not towards or not len(places):
+                break
+            away = [np.linalg.norm(self._ways(places, one), axis=1).min() for one in towards]
+            joined = self._joined(places, towards.pop(int(np.argmin(away))))
+            members.append(places[joined])
+            towards += list(places[joined][:_WALKED_TO])
+            places = places[~joined]
+        return np.vstack(members), places
 
     def _family(self, members: list[Place]) -> Family:
         place = members[0]

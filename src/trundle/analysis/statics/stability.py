@@ -9,9 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanics.algebra import Vector
+
 Array = NDArray[np.float64]
 
 NOTHING = 1e-9  # of the natural size of H: below it a mode is indifferent
+ROUNDING = 1e-15  # of the largest number of H
 PARALLEL = 1e-6  # two ways of moving that differ less are one
 
 
@@ -74,7 +77,8 @@ def modes_of(H: Array, G: Array, turns: Array, moves: Array, scale: float) -> tu
 
 
 def _eigen(H: Array) -> list[tuple[complex, Array]]:
-    values, vectors = np.linalg.eig(H)
+    # LAPACK balances a matrix first: by numbers of 1e-45, all that rounding has left, it would scale the others away.
+    values, vectors = np.linalg.eig(np.where(np.abs(H) < ROUNDING * np.abs(H).max(), 0.0, H))
     return [(complex(value), vectors[:, i]) for i, value in enumerate(values)]
 
 
@@ -91,15 +95,28 @@ def _damped(H: Array, G: Array) -> list[tuple[complex, Array]]:
     return found
 
 
-def stability_of(modes: tuple[Mode, ...], ignore_pivot: float = 0.0) -> str:
-    """Return "unstable" where any mode grows, "stable" where any other swings or dies away, else "indifferent".
+def on_the_spot(mode: Mode, normal: Vector) -> bool:
+    """Tell whether a body turns about the normal: one that tips over its rim stays where it is, too, and falls.
 
     Examples
     --------
-    >>> stability_of((Mode(0j, (0.0, 1.0, 0.0), (0.1, 0.0, 0.0)),))
+    >>> on_the_spot(Mode(3.0, (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)), Vector(0.0, 0.0, 1.0))
+    False
+    """
+    return Vector(*mode.turn).cross(normal).norm() < PARALLEL
+
+
+def stability_of(modes: tuple[Mode, ...], normal: Vector) -> str:
+    """Return "unstable" where any mode grows, "stable" where any other swings or dies away, else "indifferent".
+
+    How it turns on the spot does not count.
+
+    Examples
+    --------
+    >>> stability_of((Mode(0j, (0.0, 1.0, 0.0), (0.1, 0.0, 0.0)),), Vector(0.0, 0.0, 1.0))
     'indifferent'
     """
-    kinds = {mode.kind for mode in modes if np.linalg.norm(mode.moves) >= ignore_pivot}
+    kinds = {mode.kind for mode in modes if not on_the_spot(mode, normal)}
     return next((kind for kind in ("unstable", "stable") if kind in kinds), "indifferent")
 
 
