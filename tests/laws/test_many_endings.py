@@ -139,6 +139,23 @@ def test_the_others_are_what_they_are_without_it(made: Any) -> None:
     assert alone.identical(kept.drop_vars(differ))
 
 
+def test_a_law_that_is_followed_by_itself_is_not_made_ready_for_the_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To trace it, four times for its charts, took half a minute for an egg-shaped body in an egg-shaped bowl."""
+    asked: list[Any] = []
+    by_itself: list[Any] = []
+    ready_in, integrate = ensemble.integrators.ready_in, ensemble.runge_kutta.integrate
+    monkeypatch.setattr(ensemble.integrators, "ready_in", lambda *given: asked.append(given[1]) or ready_in(*given))
+    monkeypatch.setattr(
+        ensemble.runge_kutta, "integrate", lambda *given: by_itself.append(given[1].law) or integrate(*given)
+    )
+    shaken = tr.Support(tr.Plane(), friction=0.1, motion=tr.Shake((0.02, 0.0, 0.0), 20.0))
+    egg = tr.RollingSystem(tr.Body.ellipsoid((0.03, 0.025, 0.02), mass=0.1), shaken)
+    many_of([(egg, egg.place(attitude=(0.1 * i, 0.3, 0.0))) for i in range(3)], 0.2, 0.1)
+    assert by_itself
+    assert asked
+    assert not any(law.brief for law in asked)
+
+
 def test_a_refusal_names_the_member_and_what_is_wrong_with_it() -> None:
     runs = many_of(company(), 2.0, 0.5)
     endings = runs.ending.values.tolist()

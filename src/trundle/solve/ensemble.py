@@ -349,9 +349,11 @@ class Member:
 
     def _begin(self, time: float, state: Any, reached: int) -> None:
         """Begin the stretch, or go on in it, from the law's numbers, with so many of its instants behind it."""
+        self.reached = reached  # instants of the stretch
+        if self.now.law.brief:  # it is followed by itself: to trace it takes longer
+            return
         self.lowered, self.key = self.compiled.chosen(self.system, self.now.law, state)
         self.state = np.array(self.lowered.chart.of_law(self.system, time, state), dtype=float)
-        self.reached = reached  # instants of the stretch
         self.legs = iter(self.legs_from(time, self.first + reached))
 
     def lanes(self) -> _Lanes:
