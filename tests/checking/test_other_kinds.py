@@ -43,3 +43,18 @@ def test_a_support_that_only_its_own_course_tells_is_refused(motion: tr.SpinBy |
         tr.check({"t": t, "x": 0.1 + t, "y": 0 * t}, system)
     with pytest.raises(tr.InvalidValueError, match=r"`support\.motion`"):
         tr.check_equations(lambda *_: (0.0, 0.0), system)
+
+
+@pytest.mark.parametrize("parts", ["angular velocity", "both"])
+def test_a_coin_that_whirls_faster_than_it_is_sampled_is_no_matter_for_a_check(parts: str) -> None:
+    """It falls towards its face and turns 2.8 rad a sample: Ω so far apart adds up to no orientation."""
+    coin = tr.RollingSystem(tr.Body.disc(radius=0.07, mass=0.004), tr.Support(tr.Plane()))
+    start = coin.place(attitude=(0.0, "-8 deg", 0.0), velocity=(-0.04, 0.0))
+    run = tr.simulate(coin, start, 10.0, 0.267467)
+    q, Omega = run.data.orientation.values, run.data.angular_velocity.values
+    seen = {"t": run.samples.time, **dict(zip("xyz", run.samples.position.T, strict=True))}
+    if parts != "angular velocity":
+        seen |= dict(zip(("qw", "qx", "qy", "qz"), q.T, strict=True))
+    seen |= dict(zip(("wx", "wy", "wz"), Omega.T, strict=True))
+    with pytest.raises(tr.TrundleError, match="often enough to follow the orientation"):
+        tr.check(seen, coin)

@@ -203,23 +203,31 @@ def _apart(ours: OwnRun) -> str:
 
 def followed(theirs: ExternalTrajectory, system: RollingSystem) -> tuple[ExternalTrajectory, list[CardFigure]]:
     """Leave the orientation out where the body turns so far between samples that nobody could tell how often."""
-    if theirs.orientation is None:
-        return theirs, []
-    if theirs.angular_velocity is not None:
-        fastest = float(np.linalg.norm(theirs.angular_velocity, axis=1).max())
-    else:
-        some = np.unique(np.linspace(0, theirs.time.size - 1, min(theirs.time.size, 240)).round().astype(int))
-        at = motion_of(system, theirs, None, some)
-        fastest = float(np.linalg.norm((at.velocity - at.carried) / np.linalg.norm(at.offset[0]), axis=1).max())
-    turn = fastest * float(np.median(np.diff(theirs.time)))
+    turn = _turn_between(theirs, system)
     if turn <= _FOLLOWED:
         return theirs, []
-    if not system.body.is_isotropic_sphere and theirs.angular_velocity is None:
+    if not system.body.is_isotropic_sphere:  # neither do samples of Ω so far apart add up to it
         raise InvalidValueError(
             "time", "must be sampled often enough to follow the orientation", f"{turn:.3g} rad a sample", "Write more."
         )
+    if theirs.orientation is None:
+        return theirs, []
     note = "the body turns too far between samples: the orientation is left out"
     return replace(theirs, orientation=None), [CardFigure("turn between samples", turn, "rad", note=note)]
+
+
+def _turn_between(theirs: ExternalTrajectory, system: RollingSystem) -> float:
+    """Return how far the body seems to turn from one sample to the next, rad."""
+    steps, q = np.diff(theirs.time), theirs.orientation
+    if theirs.angular_velocity is not None:
+        return float(np.linalg.norm(theirs.angular_velocity, axis=1).max() * np.median(steps))
+    if q is None:
+        return 0.0
+    some = np.unique(np.linspace(0, theirs.time.size - 1, min(theirs.time.size, 240)).round().astype(int))
+    at = motion_of(system, theirs, None, some)
+    fastest = float(np.linalg.norm((at.velocity - at.carried) / np.linalg.norm(at.offset[0]), axis=1).max())
+    seen = 2 * np.arccos(np.clip(np.abs((q[1:] * q[:-1]).sum(axis=1)), 0.0, 1.0))
+    return max(fastest * float(np.median(steps)), float(np.median(seen)))
 
 
 def _positive(tolerance: Any) -> float:
