@@ -58,3 +58,11 @@ def test_a_coin_that_whirls_faster_than_it_is_sampled_is_no_matter_for_a_check(p
     seen |= dict(zip(("wx", "wy", "wz"), Omega.T, strict=True))
     with pytest.raises(tr.TrundleError, match="often enough to follow the orientation"):
         tr.check(seen, coin)
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_stays_where_it_is_is_drawn_as_well() -> None:
+    slope = tr.RollingSystem(tr.Body.solid_sphere(0.03, 0.5), tr.Support(tr.Plane()))
+    still = tr.check(tr.simulate(slope, slope.place((0.4, -0.3)), 1.0, 0.02), slope)
+    assert still.passed, str(still)
+    still.plot().draw_without_rendering()

@@ -21,6 +21,7 @@ WIDTH, LEFT, STRIPS, BETWEEN, EDGE = 11.4, 0.72, 5.1, 0.95, 0.2
 FOOT, HEADER, EACH, GAP, LEAST = 0.55, 1.02, 0.66, 0.3, 4.7
 _KEY = "residuals as shares; dashed: the most allowed"
 _LONGEST = 165  # letters of the line under the title
+_LEAST = 1e-6  # of how far from the middle of the support it is: what moves less is at rest
 _DEEPEST = 1e-9  # of the bound: what lies lower is drawn there
 
 
@@ -112,7 +113,7 @@ def _paths(ax: Axes, check: Check, drawn: Drawn) -> None:
 def _window(ax: Axes, theirs: Any, ours: Any) -> None:
     """Show both paths; of ours no more than lies within reach of theirs, if theirs is far smaller."""
     low, high = theirs.min(axis=0), theirs.max(axis=0)
-    span = max(float((high - low).max()), 1e-9)
+    span = max(float((high - low).max()), _LEAST * float(np.abs([low, high]).max()), 1e-9)
     if len(ours):
         near = np.all((ours > low - 2 * span) & (ours < high + 2 * span), axis=1)
         low, high = (f([edge, *ours[near]], axis=0) for f, edge in ((np.min, low), (np.max, high)))

@@ -83,14 +83,14 @@ def _array(data: Any, name: str) -> Array:
 
 
 def _forces(run: Trajectory, facts: Facts, time: Array, support: Any, acceleration: float) -> list[Series]:
-    """Return the contact force and the friction needed; a small share of the weight, or of m times this, is none."""
+    """Return the contact force and the friction needed; a small share of the weight is none, or of m times this."""
     R = _array(support, "contact_force")
     coordinates = tuple(_array(support, name) for name in coordinate_variables(run))
     normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), coordinates).array()
     normal = np.broadcast_to(normal, R.shape)
     N = np.einsum("ni,ni->n", R, normal)
     f = np.linalg.norm(R - N[:, None] * normal, axis=1)
-    force = run.system.body.mass * max(run.system.gravity, acceleration)
+    force = run.system.body.mass * (run.system.gravity or acceleration)
     lines = {"N, normal": N, "|f|, friction": f}
     panels = [Series("contact\nforce", "force", force, lines, from_zero=True)]
     if float(np.max(N)) > NOTHING * force:
