@@ -159,7 +159,18 @@ def test_a_coin_on_its_edge_falls_over_whichever_way_it_faces(loads: tuple[tr.Lo
     FigureCanvasAgg(figure).draw()
 
 
-def test_a_flat_ellipsoid_rests_on_either_pole_and_stands_on_its_equator() -> None:
-    system = tr.RollingSystem(tr.Body.ellipsoid((0.05, 0.05, 0.02), mass=0.1), tr.Support(tr.Plane()))
-    found = found_in_time(system, system.place(attitude=(0.3, 0.8, 0.0)))
-    assert sorted(one.stability for one in found) == ["stable", "stable", "unstable"]
+@pytest.mark.parametrize("lean", [0.3, 0.8, 1.2])
+@pytest.mark.parametrize(
+    ("axes", "stable", "unstable"),
+    [((0.05, 0.05, 0.02), 2, 1), ((0.05, 0.05, 0.09), 1, 2), ((0.05, 0.03, 0.09), 2, 4)],
+    ids=["flat", "long", "of three axes"],
+)
+def test_an_ellipsoid_rests_on_either_end_of_an_axis_or_all_round_it(
+    axes: tuple[float, float, float], stable: int, unstable: int, lean: float
+) -> None:
+    """Its height over the plane has two of each kind of points; of an equator all the points are one family."""
+    system = tr.RollingSystem(tr.Body.ellipsoid(axes, mass=0.1), tr.Support(tr.Plane()))
+    found = found_in_time(system, system.place(attitude=(0.3, lean, 0.0)))
+    assert [one.stability for one in found].count("stable") == stable
+    assert [one.stability for one in found].count("unstable") == unstable
+    assert len(found) == stable + unstable

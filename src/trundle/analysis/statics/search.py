@@ -23,9 +23,9 @@ Array = NDArray[np.float64]
 FOUND = 1e-12  # share of the scale below which the torque is nothing
 FREE = 1e-9  # share of the largest slope of the torque below which a direction is free
 SAME = 1e-6  # radii and radians: places nearer than this are one
-_WALKED_TO = 32  # places of a family
+_WALKED_TO = 24  # times, to places of a family
 _ROUNDS, _LONGEST = 50, 0.5  # Newton steps, and the longest of them, rad
-_ORIENTATIONS, _AROUND, _ACROSS = 24, 16, 5  # starts
+_ORIENTATIONS, _AROUND, _ACROSS = 48, 16, 5  # starts
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Search:
         if not self.uniform:
             place += f", within {self._reach():.3g} m of the start" if "angle" in kinds else ""
             place = place if "angle" in kinds else f"places within {self._reach():.3g} m of the start"
-        orientations = f", {_ORIENTATIONS + 1} orientations at each" if self.oriented else ""
+        orientations = f", {len(self._turns())} orientations at each" if self.oriented else ""
         return f"Newton's method from {starts} {'start' if starts == 1 else 'starts'} ({place}{orientations})"
 
     # --- starts -------------------------------------------------------------------------------------------
@@ -110,11 +110,7 @@ class Search:
             np.arange(_AROUND) * 2 * math.pi / _AROUND if k == "angle" else way
             for k, way in zip(kinds, along, strict=True)
         ]
-        turns = [Quaternion(*self.start.q)]
-        if self.oriented:
-            drawn = np.random.default_rng(seed=28).normal(size=(_ORIENTATIONS, 4))
-            turns += [Quaternion(*row) for row in drawn / np.linalg.norm(drawn, axis=1)[:, None]]
-        rows = []
+        turns, rows = self._turns(), []
         for du in spread[0]:
             for dv in spread[1]:
                 try:
@@ -123,6 +119,14 @@ class Search:
                     continue
                 rows += [Place(p, q).numbers for q in turns]
         return np.array(rows)
+
+    def _turns(self) -> list[Quaternion]:
+        """Return the orientation of the start, and any others: at a special one the law may be degenerate."""
+        turns = [Quaternion(*self.start.q)]
+        if not self.oriented:
+            return turns
+        drawn = np.random.default_rng(seed=28).normal(size=(_ORIENTATIONS, 4))
+        return turns + [Quaternion(*row) for row in drawn / np.linalg.norm(drawn, axis=1)[:, None]]
 
     def _reach(self) -> float:
         rim = self.system.support.surface.rim
@@ -191,18 +195,19 @@ class Search:
     def _those_with(self, first: Array, places: Array) -> tuple[Array, Array]:
         """Return the places of one family, the first of them first, and the others.
 
-        A walk straight towards one of them may end where the family bends away: so others of it are walked to as well.
+        A walk straight towards one of them may end where the family bends away: from there others are walked to.
         """
-        members, towards = [], [first]
+        members, towards, walkers = first[None], [first], places
         for _ in range(_WALKED_TO):
-            if not towards or not len(places):
+            if not len(places):
                 break
-            away = [np.linalg.norm(self._ways(places, one), axis=1).min() for one in towards]
-            joined = self._joined(places, towards.pop(int(np.argmin(away))))
-            members.append(places[joined])
+            towards = towards or list(members[:_WALKED_TO])
+            away = [np.linalg.norm(self._ways(walkers, one), axis=1).min() for one in towards]
+            joined, walkers = self._joined(walkers, towards.pop(int(np.argmin(away))))
+            members = np.vstack([members, places[joined]])
             towards += list(places[joined][:_WALKED_TO])
-            places = places[~joined]
-        return np.vstack(members), places
+            places, walkers = places[~joined], walkers[~joined]
+        return members[1:], places
 
     def _family(self, members: list[Place]) -> Family:
         place = members[0]
@@ -238,9 +243,9 @@ class Search:
         steps = ((u + 1j * rest.STEP, v), (u, v + 1j * rest.STEP))
         return [math.hypot(*(float(np.sum(np.imag(part))) for part in surface.point(*at))) / rest.STEP for at in steps]
 
-    def _joined(self, here: Array, there: Array) -> NDArray[np.bool_]:
-        """Return which places can be walked to another without leaving equilibrium, straight towards it."""
-        arrived = np.zeros(len(here), dtype=bool)
+    def _joined(self, here: Array, there: Array) -> tuple[NDArray[np.bool_], Array]:
+        """Return which places can be walked straight to another, always in equilibrium, and where each walk ends."""
+        arrived, ends = np.zeros(len(here), dtype=bool), here.copy()
         going = np.arange(len(here))
         for _ in range(_ROUNDS):
             ways = self._ways(here, there)
@@ -257,7 +262,8 @@ class Search:
                 break
             step = along * np.minimum(1.0, _LONGEST / np.maximum(length, 1e-300))[:, None] + back
             here, going = self._stepped(here[stay], step[stay]), going[stay]
-        return arrived
+            ends[going] = here
+        return arrived, ends
 
 
 def round_body(body: Body) -> bool:
