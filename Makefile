@@ -19,7 +19,7 @@ help:
 	@echo 'make demo    install into .venv (from PyPI and the npm registry), then run the shipped tilted turntable into demo/'
 	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers, the web part'
 	@echo 'make check   lint, types, and the tests nearest to what changed since the last commit: a minute; SINCE=main'
-	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly: eight minutes; COUNT=2000 for more'
+	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly: seven minutes; COUNT=2000 for more'
 	@echo 'make mutation  plant faults in the package and print which figure of the card tells'
 	@echo 'make dispatch  count where the package asks which concrete surface, shape, body, motion, load or form it has'
 	@echo 'make tables  write the tables of parts in docs/ anew, from what the parts say of themselves'
