@@ -22,11 +22,8 @@ def main(words: list[str] | None = None) -> int:
     """Try out scenarios, print the table and the causes; return 1 where some ended badly, else 0."""
     asked = _arguments(words)
     with tempfile.TemporaryDirectory(prefix="fuzz-") as working:
-        found = list(
-            _told(
-                outcomes(_cases(asked), Path(working), asked.workers, asked.limit, with_command=asked.commands), asked
-            )
-        )
+        ended = outcomes(_cases(asked), Path(working), asked.workers, asked.limit, with_command=asked.commands)
+        found = list(_told(ended, asked))
     found.sort(key=lambda one: (list(CLASSES).index(one.name), one.seed))
     if asked.one:
         _show(found[0])

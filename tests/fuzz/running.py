@@ -26,7 +26,7 @@ _CANDIDATES = 60  # scenarios that may be refused before one runs
 _MEMORY = 8 << 30  # bytes
 PASSED, FAILED, GAVE_UP, REFUSED = "passed", "card failed", "gave up in words", "refused"
 HANG, TRACEBACK, CRASH = "hang", "traceback", "crash"
-_VERDICT = "trundle: it does not hold"  # of a check, of what does not roll all the way
+_OWN_WORDS = "trundle: "  # with which a command says that a check or a fit fails, or that data cannot decide
 OUTCOMES = (PASSED, FAILED, GAVE_UP, HANG, TRACEBACK, CRASH, REFUSED)
 BAD = (FAILED, HANG, TRACEBACK, CRASH)
 
@@ -232,7 +232,7 @@ class Child:
         path = self.folder / "known"
         known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
         lines = (self.folder / "stderr").read_text(encoding="utf-8", errors="replace").splitlines()
-        printed = "\n".join(line for line in lines if line.strip() and not line.startswith(_VERDICT))
+        printed = "\n".join(line for line in lines if line.strip() and not line.startswith(_OWN_WORDS))
         known |= {"seconds": seconds, "warned": _general(next(iter(printed.splitlines()), ""))}
         if os.WIFSIGNALED(status):
             number = os.WTERMSIG(status)
