@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from ..errors import SolverError
@@ -12,8 +13,13 @@ from .duals import has_duals, value_of, values_of
 from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from .surfaces import Surface
     from .system import RollingSystem, State
+
+    Array = NDArray[np.float64]
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
@@ -21,7 +27,9 @@ _NEXT_TO = 1e-7  # share of these by which a known point may be off
 _ROUNDING = 1e-15
 _SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
 _LOOKS, _GUESSES = 600, 6  # for a better first guess, and how many of them are followed
+_STRIDES, _ROUGHLY = 12, 0.01  # of a look, and share of the lengths at hand to which it must then be there
 _ALIKE = 0.9  # cosine of the angle between the normals of two that lead to the same
+_AT_ONCE = 64  # bodies, of which one search takes 600 looks each
 
 
 def nearest(
@@ -92,13 +100,57 @@ def closest_contact(
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, coordinates)
     if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
-        found = _searched(system, time, centre, orientation, coordinates, found) or found
+        import numpy as np
+
+        known = np.full((1, 3), np.nan) if found is None else np.array([tuple(found.point)])
+        place = np.array([time]), np.array([tuple(centre)]), np.array([tuple(orientation)])
+        point = _searched(system, *place, coordinates, known)[0].tolist()
+        if not math.isnan(point[0]):
+            found = contact_at(system, time, Vector(*point), orientation, coordinates)
     if found is None or _is_beyond(system.support.surface, found.support.local(found.point)):
-        raise SolverError(
-            f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
-            f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
-        )
+        raise _nowhere_nearest(float(time), centre)
     return found
+
+
+def closest_contacts(system: RollingSystem, time: Array, centre: Array, orientation: Array) -> Contact:
+    """Return the same for many at once: at times (n,) with centres (n, 3) and unit quaternions (n, 4).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import trundle as tr
+    >>> bowl = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> centre, still = np.array([[0.0, 0.0, 0.2], [0.2, 0.0, 0.2]]), np.tile([1.0, 0.0, 0.0, 0.0], (2, 1))
+    >>> closest_contacts(bowl, np.zeros(2), centre, still).point.x.round(12).tolist()
+    [0.0, 0.277350098113]
+    """
+    import numpy as np
+
+    r, q = Vector.of(centre), Quaternion.of(orientation)
+    with np.errstate(all="ignore"):  # outside a formula
+        contact, left = followed(system, time, r, r, q, ())
+        wrong = _not(left <= _CLOSE) | _hollow_under(contact, r)
+        for mask, _ in _misplacements(system, contact, r, q):
+            wrong = wrong | mask
+    points, unsure = contact.point.array(), np.flatnonzero(np.broadcast_to(wrong, time.shape))
+    points[~(left <= _CLOSE)] = np.nan
+    for rows in np.array_split(unsure, math.ceil(unsure.size / _AT_ONCE)) if unsure.size else ():
+        found = _searched(system, time[rows], centre[rows], orientation[rows], (), points[rows])
+        points[rows] = np.where(np.isnan(found), points[rows], found)
+    contact = contact_at(system, time, Vector.of(points), q)
+    inside = system.support.surface.domain_margin(contact.support.local(contact.point))
+    lost = np.isnan(points).any(axis=1) if inside is None else ~(np.asarray(inside) >= 0)
+    if lost.any():
+        first = int(np.argmax(np.broadcast_to(lost, time.shape)))
+        raise _nowhere_nearest(float(time[first]), Vector(*centre[first]))
+    return contact
+
+
+def _nowhere_nearest(time: float, centre: Vector) -> SolverError:
+    return SolverError(
+        f"At t = {time:.9g} s no point of the surface is nearest to the body, whose centre is at "
+        f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
+    )
 
 
 def contact_of(system: RollingSystem, start: State) -> Contact:
@@ -150,25 +202,39 @@ def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientati
     >>> misplaced(system, contact, Vector(0.0, 0.0, 0.6), still)
     'There the support is so hollow, or the body so high over it, that other points of it are as near.'
     """
-    if _is_beyond(system.support.surface, contact.support.local(contact.point)):
-        return "There the support has ended."
+    return next((words for mask, words in _misplacements(system, contact, centre, orientation) if mask), "")
+
+
+def _misplacements(
+    system: RollingSystem, contact: Contact, centre: Vector, orientation: Quaternion
+) -> Iterator[tuple[Any, str]]:
+    """Tell what there may be against a point that is straight under a body, or under each of many; with the reason."""
+    yield _is_beyond(system.support.surface, contact.support.local(contact.point)), "There the support has ended."
     covered = system.body.shape.validity_margin(-(contact.normal @ orientation.matrix()))
-    if covered is not None and not covered > 0:
-        return "There the body has a flat side or an edge towards the support, which its shape does not cover."
+    if covered is not None:
+        yield (
+            _not(covered > 0),
+            "There the body has a flat side or an edge towards the support, which its shape does not cover.",
+        )
     if contact.flat:
-        return ""
+        return
     across = contact.relative_curvature(_gap(contact, centre))
     # Along n it is 1: the two others have the determinant as their product, and their sum is the trace less 1.
     around = sum(row[i] for i, row in enumerate(map(tuple, across.rows))) - 1.0
-    if across.determinant > _SINGULAR and around > 0:
-        return ""
-    return "There the support is so hollow, or the body so high over it, that other points of it are as near."
+    yield (
+        _not((across.determinant > _SINGULAR) & (around > 0)),
+        "There the support is so hollow, or the body so high over it, that other points of it are as near.",
+    )
 
 
-def _is_beyond(surface: Surface, there: Vector) -> bool:
+def _not(condition: Any) -> Any:
+    return condition ^ True  # of one bool, or of each
+
+
+def _is_beyond(surface: Surface, there: Vector) -> Any:
     """Tell whether a point is beyond the surface's end: a table's spline goes on there, the surface does not."""
     inside = surface.domain_margin(there)
-    return inside is not None and bool(inside < 0)
+    return False if inside is None else inside < 0
 
 
 def _newton(
@@ -189,13 +255,17 @@ def _newton(
 
 def followed(
     system: RollingSystem,
-    time: float,
+    time: Scalar,
     centre: Vector,
     point: Vector,
     orientation: Quaternion,
     coordinates: tuple[Scalar, ...],
+    *,
+    near: bool = False,
 ) -> tuple[Contact, Scalar]:
     """Follow Newton's method from a first guess at p, of one body or of many: the contact, and its last step's share.
+
+    A guess that is near takes the bending there into account from the first step on.
 
     Examples
     --------
@@ -212,71 +282,98 @@ def followed(
     arrived: Any = False
     contact = contact_at(system, time, point, orientation, coordinates)
     for step in range(_MOST_STEPS):
-        off, aside, down = beside(system, contact, centre, bent=step > 0)
+        off, aside, down = beside(system, contact, centre, bent=near or step > 0)
         left = (off.norm() + down.norm()) / (point.norm() + contact.offset.norm())
         moved = aside + down
         # Who has arrived stays, however far the others have to go.
         point = point + (moved * (1.0 - arrived) if isinstance(arrived, np.ndarray) else moved)
         contact = contact_at(system, time, point, orientation, coordinates)
         if step > 0:  # what is left now is less by as much again; or it was rounding, or leads nowhere
-            near = (left <= _CLOSE) & (left * left <= 0.1 * _ROUNDING * last)
-            arrived = arrived | near | (left <= _ROUNDING) | (left != left)
+            small = (left <= _CLOSE) & (left * left <= 0.1 * _ROUNDING * last)
+            arrived = arrived | small | (left <= _ROUNDING) | (left != left)
         if arrived.all() if isinstance(arrived, np.ndarray) else arrived:
             break
         last = left
     return contact, left
 
 
-def _gap(contact: Contact, centre: Vector) -> float:
-    return float((centre + contact.offset - contact.point).dot(contact.normal))
+def _gap(contact: Contact, centre: Vector) -> Scalar:
+    return (centre + contact.offset - contact.point).dot(contact.normal)
 
 
-def _hollow_under(contact: Contact, centre: Vector) -> bool:
+def _hollow_under(contact: Contact, centre: Vector) -> Any:
     """Tell whether a body is over a support that bends up somehow, of which other points may be nearer."""
     S = contact.shape_operator
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = S.rows
-    bends_up = xx + yy + zz < 0 or xx * yy + yy * zz + zz * xx < xy * xy + yz * yz + xz * xz
-    return bends_up and _gap(contact, centre) > _CLOSE * contact.offset.norm()
+    bends_up = (xx + yy + zz < 0) | (xx * yy + yy * zz + zz * xx < xy * xy + yz * yz + xz * xz)
+    return bends_up & (_gap(contact, centre) > _CLOSE * contact.offset.norm())
 
 
 def _searched(
     system: RollingSystem,
-    time: float,
-    centre: Vector,
-    orientation: Quaternion,
+    time: Array,
+    centre: Array,
+    orientation: Array,
     coordinates: tuple[Scalar, ...],
-    known: Contact | None,
-) -> Contact | None:
-    """Return the nearest of the known contact and those to which Newton's method leads from other likely points."""
-    try:
-        guesses = _guesses(system, time, centre, orientation, coordinates)
-    except (ArithmeticError, ValueError):  # outside a formula
-        guesses = []
-    led_to = (_newton(system, time, centre, point, orientation, coordinates) for point in guesses)
-    found = [one for one in (known, *led_to) if one is not None and not misplaced(system, one, centre, orientation)]
-    return min(found, key=lambda contact: abs(_gap(contact, centre)), default=None)
+    known: Array,
+) -> Array:
+    """Return the nearest of the known points (n, 3) and those to which Newton's method leads from other likely ones.
 
-
-def _guesses(
-    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...]
-) -> list[Vector]:
-    """Return r + ρ(n) for those n, of many all around, that are nearest to the surface's normal there."""
+    Each is one body's. NaN stands for a point that is not known, or for none that was found.
+    """
     import numpy as np
 
-    support, surface = system.support.motion.at(time, *coordinates), system.support.surface
+    def each(array: Array, times: int) -> Array:
+        return np.repeat(array, times, axis=0)
+
+    with np.errstate(all="ignore"):  # outside a formula
+        likely = _likely(system, each(time, _LOOKS), each(centre, _LOOKS), each(orientation, _LOOKS), coordinates)
+        first = np.concatenate([known[:, None], likely], axis=1)
+        count = first.shape[1]
+        r, q = Vector.of(each(centre, count)), Quaternion.of(each(orientation, count))
+        contact, left = followed(
+            system, each(time, count), r, Vector.of(first.reshape(-1, 3)), q, coordinates, near=True
+        )
+        gap = np.where(left <= _CLOSE, np.abs(_gap(contact, r)), np.inf)
+        for wrong, _ in _misplacements(system, contact, r, q):
+            gap = np.where(wrong | np.isnan(gap), np.inf, gap)
+    gap, rows = gap.reshape(-1, count), np.arange(time.size)
+    best = np.argmin(gap, axis=1)
+    found = contact.point.array().reshape(-1, count, 3)[rows, best]
+    return np.where(np.isfinite(gap[rows, best])[:, None], found, np.nan)
+
+
+def _likely(
+    system: RollingSystem, time: Array, centre: Array, orientation: Array, coordinates: tuple[Scalar, ...]
+) -> Array:
+    """Return points (n, 6, 3) of the support that are not far straight away from a body, each another way."""
+    import numpy as np
+
     i = np.arange(_LOOKS)
     z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
     across = np.sqrt(1.0 - z * z)
-    n = support.rotation @ Vector(across * np.cos(angle), across * np.sin(angle), z)
-    with np.errstate(all="ignore"):
-        points = centre + system.body.shape.contact(orientation.matrix(), n)[0]
-        there = support.local(points)
-        off = np.linalg.norm((support.rotation @ surface.normal(there)).array() - n.array(), axis=-1)
-        inside = surface.domain_margin(there)
-        likely = np.isfinite(off) if inside is None else np.isfinite(off) & (np.asarray(inside) >= 0)
-    normals, places = n.array(), points.array()
-    kept: list[int] = []
-    for which in np.argsort(off).tolist():
-        if likely[which] and len(kept) < _GUESSES and (normals[kept] @ normals[which] < _ALIKE).all():
-            kept.append(which)
-    return [Vector(*places[which].tolist()) for which in kept]
+    ways = np.column_stack([across * np.cos(angle), across * np.sin(angle), z])
+    support, n = system.support.motion.at(time, *coordinates), Vector.of(np.tile(ways, (time.size // _LOOKS, 1)))
+    rho = system.body.shape.contact(Quaternion.of(orientation).matrix(), support.rotation @ n)[0]
+    reached, far = _reached(system.support.surface, support.local(Vector.of(centre) + rho), n, rho.norm())
+    points, far = support.carried(reached).array().reshape(-1, _LOOKS, 3), far.reshape(-1, _LOOKS)
+    rows, kept = np.arange(far.shape[0]), []
+    for _ in range(_GUESSES):
+        best = np.argmin(far, axis=1)
+        kept.append(np.where(np.isfinite(far[rows, best])[:, None], points[rows, best], np.nan))
+        far = np.where(ways[best] @ ways.T >= _ALIKE, np.inf, far)
+    return np.stack(kept, axis=1)
+
+
+def _reached(surface: Surface, there: Vector, n: Vector, size: Scalar) -> tuple[Vector, Array]:
+    """Return where −n leads from points to the surface, about, and how far that is: infinite where it does not."""
+    import numpy as np
+
+    far: Scalar = 0.0
+    for _ in range(_STRIDES):  # by as much as it is to the surface: all of the way where it ends upright
+        stride = -surface.step_onto(there).dot(surface.normal(there))
+        far, there = far + stride, there - n * stride
+    leads = (np.abs(stride) <= _ROUGHLY * (size + np.abs(far))) & (surface.normal(there).dot(n) > 0)
+    inside = surface.domain_margin(there)
+    leads = leads if inside is None else leads & (np.asarray(inside) >= 0)
+    return there, np.where(leads, np.abs(far), np.inf)

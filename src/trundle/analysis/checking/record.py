@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidValueError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.contact import Contact, contact_at
-from ...mechanics.nearest import closest_contact
+from ...mechanics.nearest import closest_contacts
 from ...mechanics.shapes import concentric_sphere
 from ...mechanics.system import RollingSystem
 from .doubts import Doubt
@@ -183,16 +183,8 @@ def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: A
             break
     if moved <= 1e-9 * size:
         return contact
-    points = [
-        _settled(system, *row) for row in zip(time, centre, orientation, strict=True)
-    ]  # one by one, as a run does
-    contact = contact_at(system, time, Vector.of(np.array(points)), q)
+    contact = closest_contacts(system, time, centre, orientation)
     return replace(contact, point=r + contact.offset)
-
-
-def _settled(system: RollingSystem, time: float, centre: Array, orientation: Array) -> list[float]:
-    parts = Vector(*map(float, centre)), Quaternion(*map(float, orientation))
-    return [float(part) for part in closest_contact(system, float(time), *parts).point]
 
 
 def gap_of(system: RollingSystem, contact: Contact) -> Array:
