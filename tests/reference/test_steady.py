@@ -294,3 +294,17 @@ def test_names_of_quantities_are_checked() -> None:
         motion.along("speed", 2.0, 1.0)
     with pytest.raises(tr.SolverError, match="is a steady motion"):
         tr.periodic_motion(system, start)
+
+
+@pytest.mark.parametrize("rate", [-3.0, 0.5, 3.0])
+def test_what_runs_off_the_rim_before_it_comes_back_has_no_period(rate: float) -> None:
+    system = tr.RollingSystem(SOLID, tr.Support(tr.Plane(rim=0.3), motion=tr.Spin(rate)))
+    start = system.place(position=(0.25, 0.0), velocity=(0.5, -1.0))
+    with pytest.raises(tr.SolverError, match=r"The motion does not come back: it ran off the rim \(0\.3 m"):
+        tr.periodic_motion(system, start)
+
+
+def test_runs_are_compared_with_the_linear_law_while_they_are_on_the_table() -> None:
+    system = tr.RollingSystem(SOLID, tr.Support(tr.Plane(rim=0.3)))
+    (motion,) = tr.steady_motions(system, system.place(position=(0.295, 0.0), velocity=(0.3, 0.0)))
+    assert motion.checked < SOLVER(1e5, 1e-15)

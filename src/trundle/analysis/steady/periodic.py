@@ -16,9 +16,10 @@ from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
 from .finding import flow_of
 from .flow import Array, Flow
-from .runs import carried, reference, slope_of_run
+from .runs import carried, does_not_return, reference, slope_of_run
 from .symmetry import COUNT, generator, group_matrix, moved_by, symmetries
 
+_FEWEST = 3  # samples that may show a return
 _SAMPLES = 400  # of the run in which the period is looked for
 _STEPS = 25
 FOUND = 2e-14  # closing error in units of the scale: as good as it gets
@@ -182,7 +183,10 @@ def _first_return(flow: Flow, y: Array, moves: Array, most: float) -> tuple[floa
     span = min(most, 12 / flow.rate)
     while True:
         times = np.linspace(0, span, _SAMPLES * max(1, round(span * flow.rate / 12)) + 1)
-        states = carried(flow, y, times)
+        states, end = carried(flow, y, times)
+        if end is not None and states.shape[1] < _FEWEST:
+            raise does_not_return(end)
+        times = times[: states.shape[1]]
         marks = signature(flow, states)
         apart = np.linalg.norm(marks - marks[:, :1], axis=0)
         if apart.max() < 1e-10:
@@ -192,6 +196,8 @@ def _first_return(flow: Flow, y: Array, moves: Array, most: float) -> tuple[floa
             move, off = bringing_back(flow, y, moves, states[:, i])
             if off < _BACK * far:
                 return float(times[i]), move, far
+        if end is not None:
+            raise does_not_return(end)
         if span >= most:
             raise SolverError(
                 f"Nothing came back within {span:g} s. Give a longer `longest`, or a start nearer to a periodic motion."

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from ...errors import SolverError
 from ...solve import methods
+from ...solve.samples import Event
 from .finding import Relative
 from .flow import WIDTHS, Array, Flow, differences
 from .modes import Reduced, fastest, modes_of
@@ -16,18 +16,33 @@ _LONGEST = 2.0  # time constants for which a nudged run goes on
 _GOOD = 1e-8  # agreement that smaller nudges need not better
 
 
-def carried(flow: Flow, y: Array, times: Any) -> Array:
-    """Return the states that a run passes through, in the frame of the flow."""
+def carried(flow: Flow, y: Array, times: Array) -> tuple[Array, Event | None]:
+    """Return the states that a run passes through while it rolls, in the frame of the flow, and what ends that."""
     method = methods.Method.of(methods.choose("taylor", flow.system, flow.state(y)))
-    instants = np.atleast_1d(np.asarray(times, dtype=float))
-    run = method.solve(flow.system, flow.state(y), flow.time + instants)
+    run = method.solve(flow.system, flow.state(y), flow.time + times)
     states = np.hstack([run.contact, run.orientation, run.angular_velocity]).T
-    if len(instants) and np.sum(states[3:7, 0] * y[3:7]) < 0 and instants[0] == 0:
+    if len(times) and np.sum(states[3:7, 0] * y[3:7]) < 0 and times[0] == 0:
         states[3:7] = -states[3:7]
-    for i, t in enumerate(instants):
+    end = run.events[0] if run.events else None
+    if end is not None:
+        states = states[:, : np.searchsorted(flow.time + times, end.time)]
+    for i, t in enumerate(times[: states.shape[1]]):
         back = group_matrix(-flow.turning * t * TURN)[:10, :10]
         states[:, i] = back @ states[:, i]
-    return states if np.ndim(times) else states[:, 0]
+    return states, end
+
+
+def carried_to(flow: Flow, y: Array, time: float) -> Array:
+    """Return the state to which a run leads, in the frame of the flow."""
+    states, end = carried(flow, y, np.array([time]))
+    if end is not None:
+        raise does_not_return(end)
+    return states[:, 0]
+
+
+def does_not_return(end: Event) -> SolverError:
+    """Return what to say of a run that rolls no more before it can be compared with its start."""
+    return SolverError(f"The motion does not come back: it {end.text}.")
 
 
 def slope_of_run(
@@ -46,7 +61,7 @@ def slope_of_run(
     def after(states: Array) -> Array:
         ends = []
         for state in states.T:
-            end = move @ np.append(carried(flow, flow.put_back(state), time), 1.0)
+            end = move @ np.append(carried_to(flow, flow.put_back(state), time), 1.0)
             ends.append(_same_sheet(end[:10], sheet))
         return np.stack(ends, axis=1)
 
@@ -55,7 +70,7 @@ def slope_of_run(
 
 def reference(flow: Flow, y: Array, time: float, move: Array) -> Array:
     """Return where a run is after a time, brought back by a move."""
-    return np.asarray((move @ np.append(carried(flow, y, time), 1.0))[:10])
+    return np.asarray((move @ np.append(carried_to(flow, y, time), 1.0))[:10])
 
 
 def _same_sheet(y: Array, other: Array) -> Array:
@@ -72,6 +87,9 @@ def check(relative: Relative, reduced: Reduced) -> float:
 
     flow, y = relative.flow, relative.y
     time = _LONGEST / max(fastest(modes_of(reduced, flow.rate)), 0.2 * flow.rate)
+    end = carried(flow, y, np.array([time]))[1]
+    if end is not None:  # as at a rim: while all of them still roll
+        time = 0.5 * (end.time - flow.time)
     back = group_matrix(-time * relative.shares)
     nudges = flow.scale[:, None] * reduced.basis
     expected, least = expm(time * reduced.matrix), np.inf
