@@ -311,6 +311,83 @@ def test_a_run_of_ones_own_is_fitted_to_what_rounding_leaves(key: str, columns: 
     assert not fit.judgement.outliers
 
 
+OWN_RUNS = {
+    "round in a trough": """
+body = { kind = "solid-sphere", radius = "10 mm", mass = "32.7 g" }
+support = { kind = "cylinder", radius = "20 cm", tilt = "90 deg" }
+start = { position = [0, 0], velocity = [3, 0] }
+run = { duration = 2, every = 0.01 }
+""",
+    "by another method": """
+body = { kind = "eccentric-sphere", radius = "10 cm", mass = "640 g", moments = [0.002, 0.0032, 0.0048] }
+support = { kind = "plane", motion = { kind = "spin", rate = "-30 rpm" } }
+start = { position = [0.2, 0], velocity = [0, 0], orientation = [0.8, 0.48, 0.36, 0] }
+run = { duration = 1.1, every = 0.005, method = "runge-kutta" }
+""",
+    "turned by nothing": """
+body = { kind = "solid-sphere", radius = "3 cm", mass = "0.1 kg" }
+support = { kind = "plane", tilt = "-5 deg" }
+start = { position = [0, 0], velocity = [0, 0] }
+run = { duration = 1, every = 0.02 }
+""",
+}
+
+
+@pytest.mark.parametrize("name", OWN_RUNS)
+def test_a_run_of_ones_own_is_a_good_fit_however_it_moves(name: str) -> None:
+    """Its residuals are what a solver is off by: they follow one another, and nothing added may explain them."""
+    asked = tr.Scenario.loads(OWN_RUNS[name])
+    run = asked.run()
+    columns = {"t": run.samples.time} | dict(zip("xyz", run.samples.position.T, strict=True))
+    columns |= dict(zip(("vx", "vy", "vz"), run.samples.velocity.T, strict=True))
+    columns |= dict(zip(("wx", "wy", "wz"), run.samples.angular_velocity.T, strict=True))
+    fit = tr.fit(columns, asked, free=["gravity"])
+    assert fit.judgement.good, str(fit)
+    if name == "by another method":  # nothing falls there
+        assert fit["gravity"].sigma is None or fit["gravity"].sigma < 1e-6
+        return
+    assert abs(fit["gravity"].value - 9.80665) <= max(5 * fit["gravity"].sigma, 1e-9)
+    best = fit.compare().best
+    assert best is None, str(best)
+
+
+@pytest.mark.parametrize("key", ["body.mass", "support.radius", "gravity"])
+@pytest.mark.filterwarnings("error")
+def test_where_the_surface_begins_a_fit_ends_in_words(key: str, capfd: pytest.CaptureFixture[str]) -> None:
+    """At the equator of a dome the place along x has no slope, and a step outwards no place."""
+    dome = tr.Scenario.loads("""
+body = { kind = "solid-sphere", radius = "10 mm", mass = "32.7 g" }
+support = { kind = "dome", radius = "20 cm", friction = 0.3 }
+start = { position = [0.2, 0] }
+run = { duration = 1, every = 0.01 }
+""")
+    samples = dome.run().samples
+    columns = {"t": samples.time} | dict(zip("xyz", samples.position.T, strict=True))
+    try:
+        fit = tr.fit(columns, dome, free=[key])
+    except tr.TrundleError as error:
+        assert "has no derivative" in str(error)
+    else:
+        assert fit.answer == "bad" and str(fit) and fit.plot()
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_never_moves_shows_nothing_and_is_drawn() -> None:
+    asked = tr.Scenario.loads("""
+body = { kind = "solid-sphere", radius = "2 cm", mass = "0.1 kg" }
+support = { kind = "plane" }
+start = { position = [0.2, 0] }
+run = { duration = 1, every = 0.05 }
+""")
+    samples = asked.run().samples
+    columns = {"t": samples.time} | dict(zip("xyz", samples.position.T, strict=True))
+    fit = tr.fit(columns, asked, free=["body.mass"])
+    assert fit.answer == "cannot decide" and "body.mass" in fit.undetermined[0].names
+    low, high = fit.plot().axes[0].get_xlim()
+    assert low < 0.2 < high and high - low > 0.01
+
+
 def test_a_number_stops_at_its_limit() -> None:
     drag = scenario(body=ball(0.5), support=turntable(OMEGA), loads=[{"kind": "drag", "coefficient": 1e-3}])
     states = set()

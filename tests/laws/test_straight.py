@@ -250,3 +250,13 @@ def test_what_rolls_over_the_axle_of_a_free_table_leaves_it_at_rest(
     run = tr.simulate(system, system.place(position=(-0.01, 0.0), velocity=velocity), 1.0, 0.1)
     assert np.abs(run.data.support_rate.values).max() < 1e-12
     assert run.card().passed
+
+
+@pytest.mark.parametrize("torque", [-1e-4, 1e-4])
+def test_weightless_and_at_rest_it_is_turned_by_what_turns_its_table(torque: float) -> None:
+    """Nothing but the motor says then how fast anything is: over the axle it is turned on the spot, aside carried."""
+    table = tr.Support(tr.Plane(), motion=tr.FreeAxle(0.003, motor_torque=torque))
+    system = tr.RollingSystem(LOG, table, gravity=0.0)
+    for place in ((0.0, 0.0), (0.3, 0.1)):
+        with pytest.raises(InvalidValueError, match="must roll straight"):
+            tr.simulate(system, system.place(position=place), 1.0, 0.1)

@@ -121,7 +121,7 @@ def _check_aside(system: RollingSystem, start: State, contact: Contact, axis: Ve
             angle, axle_rate = support
             _, growth = system.support.motion.coordinate_rates(time, support, now.axle_moment)
             if abs(growth) > TOLERANCE * rate * rate:  # it will turn otherwise
-                tried.append((time, side, turning, (angle, axle_rate + rate)))
+                tried.append((time, side, turning, (angle, axle_rate + (rate or math.sqrt(abs(growth))))))
         size = max(float(now.angular_acceleration.norm()), rate * rate)
         if _across(now.angular_acceleration, axis) > TOLERANCE * size or abs(axis.dot(there.normal)) > TOLERANCE:
             when = "" if time == start.time else f" (at t = {time:.4g} s)"

@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from trundle.wording import Unit, unit_for, with_unit
 
-from ...views.plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, look
+from ...views.plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, extent, look, show_square
 
 if TYPE_CHECKING:
     from .result import Check
@@ -21,7 +21,6 @@ WIDTH, LEFT, STRIPS, BETWEEN, EDGE = 11.4, 0.72, 5.1, 0.95, 0.2
 FOOT, HEADER, EACH, GAP, LEAST = 0.55, 1.02, 0.66, 0.3, 4.7
 _KEY = "residuals as shares; dashed: the most allowed"
 _LONGEST = 165  # letters of the line under the title
-_LEAST = 1e-6  # of how far from the middle of the support it is: what moves less is at rest
 _DEEPEST = 1e-9  # of the bound: what lies lower is drawn there
 
 
@@ -89,7 +88,7 @@ def _strip(ax: Axes, series: Series, clock: Unit, first: float | None) -> None:
 def _paths(ax: Axes, check: Check, drawn: Drawn) -> None:
     """Draw both paths from above, to one scale, and the place where theirs first goes wrong."""
     theirs, ours = drawn.motion.position[:, :2], drawn.ours.position[:, :2]
-    unit = unit_for(max(float(np.ptp(theirs, axis=0).max()), 1e-9), "length")
+    unit = unit_for(extent(theirs.min(axis=0), theirs.max(axis=0)), "length")
     if len(ours):
         ax.plot(*(ours / unit.scale).T, color=GREY, lw=4.0, alpha=0.45, solid_capstyle="round", label="ours")
     ax.plot(*(theirs / unit.scale).T, color=BLUE, lw=1.4, label="theirs")
@@ -113,10 +112,8 @@ def _paths(ax: Axes, check: Check, drawn: Drawn) -> None:
 def _window(ax: Axes, theirs: Any, ours: Any) -> None:
     """Show both paths; of ours no more than lies within reach of theirs, if theirs is far smaller."""
     low, high = theirs.min(axis=0), theirs.max(axis=0)
-    span = max(float((high - low).max()), _LEAST * float(np.abs([low, high]).max()), 1e-9)
+    span = extent(low, high)
     if len(ours):
         near = np.all((ours > low - 2 * span) & (ours < high + 2 * span), axis=1)
         low, high = (f([edge, *ours[near]], axis=0) for f, edge in ((np.min, low), (np.max, high)))
-    middle, half = (low + high) / 2, 0.56 * max(float((high - low).max()), span)
-    ax.set_xlim(middle[0] - half, middle[0] + half)
-    ax.set_ylim(middle[1] - half, middle[1] + half)
+    show_square(ax, low, high, span)

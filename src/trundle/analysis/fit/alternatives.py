@@ -12,7 +12,7 @@ from ...display import Displayed, Headline, Markup, paragraph, table
 from ...errors import TrundleError
 from ...scenario import ScenarioFile
 from ...solve.samples import Array
-from .judging import ENOUGH
+from .judging import ENOUGH, chi_square
 from .minimising import minimise
 from .problem import Problem
 from .undetermined import pm
@@ -242,7 +242,7 @@ def tried(fit: Fit, idea: _Idea) -> Alternative | None:
     held = np.array([one.state in ("held", "limit") for one in fit.estimates] + [False] * len(fresh))
     try:
         minimum = minimise(other, idea.guess(other, held), held, staged=False, most=_TRIALS)
-        chi = float((other.residual(minimum.values) ** 2).sum())
+        chi = chi_square(other, other.residual(minimum.values))
         if not np.array_equal(other.inside(minimum.values), minimum.values):  # of nothing the data would like less
             chi = fit.judgement.chi_square
     except (TrundleError, ArithmeticError, ValueError):

@@ -50,6 +50,8 @@ def directions(jacobian: Array, signal: float) -> Directions:
     >>> found = directions(np.array([[1.0, 1.0], [2.0, 2.0]]), 100.0)
     >>> found.free[:, 0].round(3).tolist(), found.basis.shape
     ([-0.707, 0.707], (2, 1))
+    >>> directions(np.empty((3, 0)), 0.0).basis.shape
+    (0, 0)
     """
     norms = np.linalg.norm(jacobian, axis=0)
     silent = norms <= EXACT**2 * max(norms.max(initial=0.0), 1e-300)
@@ -58,7 +60,7 @@ def directions(jacobian: Array, signal: float) -> Directions:
     if scaled.shape[0] < scaled.shape[1]:
         scaled = np.vstack([scaled, np.zeros((scaled.shape[1] - scaled.shape[0], scaled.shape[1]))])
     _, s, Vt = np.linalg.svd(scaled, full_matrices=False)
-    free = s <= EXACT * max(s[0], 1e-300)
+    free = s <= EXACT * s.max(initial=1e-300)
     weak = ~free & (s * max(signal, 0.0) <= 1.0)
     good = ~(free | weak)
     apart = (scale[:, None] * Vt.T) if Vt.size else np.empty((norms.size, 0))

@@ -6,7 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...views.plots.sheet import BLUE, FAINT, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, Sheet, look
+from ...views.plots.sheet import (
+    BLUE,
+    FAINT,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    Sheet,
+    extent,
+    look,
+    show_square,
+)
 from . import report
 from .observations import unit_of
 
@@ -34,12 +48,17 @@ def draw(fit: Fit) -> Figure:
 
 def _path(fit: Fit, predicted: list[Any], panel: Any) -> None:
     """Draw measured places and the fitted path, both axes alike."""
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for i, (model, found) in enumerate(zip(fit.problem.models, predicted, strict=True)):
         x, y = (model.seen.columns.index(axis) for axis in "xy")
         values, colour = model.seen.values, _COLOURS[i % 6]
         label = f"measured, {model.seen.label}"
         panel.plot(values[:, x], values[:, y], _MARKS[i % 6], ms=2.2, color=colour, alpha=0.45, mew=0, label=label)
         panel.plot(found[:, x], found[:, y], color=INK, lw=1.0, label="fit" if i == 0 else None)
+        for places in (values[:, [x, y]], found[:, [x, y]]):
+            low, high = np.fmin(low, np.nanmin(places, axis=0)), np.fmax(high, np.nanmax(places, axis=0))
+    if (side := extent(low, high)) > np.max(high - low):  # it stays where it is
+        show_square(panel, low, high, side)
     panel.set_aspect("equal", adjustable="datalim")
     panel.set(xlabel="x, m", ylabel="y, m")
     _legend(panel, "left")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import TrundleError
+from ...errors import SolverError, TrundleError
 from ...mechanics.algebra import Vector
 from ...mechanics.duals import slopes_of, value_of
 from ...solve.samples import Array
@@ -84,6 +84,8 @@ def _started(model: RunModel, values: Array, wanted: list[int], begun: dict[str,
         state: Any = keys.varied(_fixed(model, fixed), listed)[1]
         parts = [*state.position, *state.velocity]
         jacobian = np.array([slopes_of(parts[row], len(wanted)) for row in rows], dtype=float)
+        if not np.isfinite(jacobian).all():
+            raise SolverError("The start has no derivative there.")
         apart = np.array([value_of(parts[row]) for row in rows], dtype=float) - targets
         step = -np.linalg.lstsq(jacobian, apart, rcond=1e-9)[0]
         guess = guess + step

@@ -141,9 +141,9 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
         z = np.full(seen.shape, np.nan)
         z[seen] = whole[at : at + size]
         at += size
-        typical = np.maximum(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), noise.rounding / noise.sigma)
+        typical = np.maximum(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), noise.least / noise.sigma)
         off_by = np.nanstd(z * noise.sigma, axis=0)
-        small = (of_places(model.seen.columns) & (off_by <= model.accuracy)) | (off_by <= noise.rounding)
+        small = (of_places(model.seen.columns) & (off_by <= model.accuracy)) | (off_by <= noise.least)
         for c in np.flatnonzero(~small):
             column = z[:, c][np.isfinite(z[:, c])]
             r, off = _memory(column)
@@ -160,10 +160,8 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
 
 
 def chi_square(problem: Problem, residual: Array) -> float:
-    """Return χ²: of data without noise the residuals are rounding, which is no less than that."""
-    each = [
-        (noise.rounding / noise.sigma)[m.seen.known] for m, noise in zip(problem.models, problem.noises, strict=True)
-    ]
+    """Return χ²: of data without noise the residuals are errors of what is computed, no less than those believed."""
+    each = [(noise.least / noise.sigma)[m.seen.known] for m, noise in zip(problem.models, problem.noises, strict=True)]
     least = np.concatenate(each)
     return float((residual**2).sum() + np.maximum(least**2 - residual[: least.size] ** 2, 0.0).sum())
 
@@ -187,10 +185,13 @@ def _memory(z: Array) -> tuple[float, float]:
     --------
     >>> _memory(np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0] * 20))[1] > 2
     True
+    >>> _memory(np.array([0.0] * 9 + [1e-200]))
+    (0.0, 0.0)
     """
     if z.size < 8 or not np.any(z):
         return 0.0, 0.0
-    clipped = np.clip(z, *(np.array([-4, 4]) * 1.4826 * max(float(np.median(np.abs(z))), 1e-300)))
+    z = z / np.abs(z).max()
+    clipped = np.clip(z, *(np.array([-4, 4]) * 1.4826 * (float(np.median(np.abs(z))) or 1.0)))
     r = float((clipped[1:] * clipped[:-1]).sum() / (clipped * clipped).sum())
     return r, r * float(np.sqrt(z.size))
 

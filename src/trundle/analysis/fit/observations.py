@@ -23,6 +23,7 @@ COLUMNS |= {ours: kind_of(read) for read, ours in GYROSCOPE.items()}
 _FEWEST = 4  # rows
 _HALF = 4  # rows to either side of one, whose polynomial shows the noise
 _DEGREE = 3
+_COMPUTED = 1e-12  # share of the largest value by which a computed motion may be off
 
 
 def unit_of(column: str) -> str:
@@ -170,7 +171,7 @@ class Noise:
     sigma: Array  # (n, c): standard deviation of each value
     # of a covariance between values: the lower Cholesky factor over all values that there are
     factor: Array | None = None
-    rounding: Array | float = 0.0  # (c,): below which nothing is believed of an estimated one
+    least: Array | float = 0.0  # (c,): below which nothing is believed of an estimated one
 
     def whiten(self, values: Array, seen: Array) -> Array:
         """Return rows (n, c, ...) where `seen` (n, c), in units of the noise, stacked."""
@@ -195,7 +196,7 @@ def noise_for(given: Any, seen: Observations) -> Noise:
     shape = seen.values.shape
     if given is None:
         least = _least(seen)
-        return Noise(False, np.broadcast_to(np.maximum(scatter(seen), least), shape), rounding=least)
+        return Noise(False, np.broadcast_to(np.maximum(scatter(seen), least), shape), least=least)
     if isinstance(given, Mapping):
         missing = [name for name in seen.columns if name not in given]
         if missing:
@@ -216,11 +217,19 @@ def noise_for(given: Any, seen: Observations) -> Noise:
 
 
 def _least(seen: Observations) -> Array:
-    """Return the noise below which nothing is believed: a rounding of the largest value of a kind, along any axis."""
-    largest = np.nanmax(np.abs(seen.values), axis=0)
-    kinds = [COLUMNS[name] for name in seen.columns]
-    alike = [max(one for one, other in zip(largest, kinds, strict=True) if other == kind) for kind in kinds]
-    return np.asarray(np.finfo(float).eps * 16 * np.maximum(alike, 1e-30))
+    """Return the noise below which nothing is believed: the error of what is computed, of a kind along any axis.
+
+    It grows as the motion goes to and fro. Of what never moves it is that of the places in an interval, or of a radian.
+    """
+    columns, values = [COLUMNS[name] for name in seen.columns], seen.values
+    each = np.nanmax(np.abs(values), axis=0)
+    way = np.array([np.abs(np.diff(one[np.isfinite(one)])).sum() for one in values.T])
+    often = float(np.max(way / np.where(each > 0, each, np.inf), initial=0.0))
+    largest = {kind: float(max(each[[one == kind for one in columns]])) for kind in columns}
+    interval = float(np.median(np.diff(seen.time))) if seen.time.size > 1 else 1.0
+    still = {"velocity": largest.get("length", 0.0) / interval, "angular velocity": 1.0 / interval}
+    sizes = [largest[kind] or still.get(str(kind), 0.0) for kind in columns]
+    return np.asarray(_COMPUTED * (1.0 + often) * np.maximum(sizes, 1e-30))
 
 
 def _positive(given: Any, kind: str | None, key: str) -> Any:

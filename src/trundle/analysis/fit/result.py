@@ -154,10 +154,12 @@ class Fit(Plottable, Serializable):
     @property
     def answer(self) -> str:
         """One of "good", "bad" and "cannot decide": nothing that was asked is fixed, or the data show no motion."""
-        if not self.moves or self.judgement.freedom < 1:
+        if self.judgement.freedom < 1:
             return UNDECIDED
         if not self.judgement.good:
             return BAD
+        if not self.moves:
+            return UNDECIDED
         asked = [one for one in self.estimates if one.asked]
         return UNDECIDED if asked and all(one.sigma is None and one.state != "limit" for one in asked) else GOOD
 
@@ -170,10 +172,10 @@ class Fit(Plottable, Serializable):
     def verdict(self) -> str:
         """The answer with its reason."""
         said = self.judgement
-        if not self.moves:
-            return "cannot decide: the noise is larger than the motion"
         if said.freedom < 1:
             return "cannot decide: no values are left over to judge by"
+        if said.good and not self.moves:
+            return "cannot decide: the noise is larger than the motion"
         noise = "" if said.noise_known else ", against the noise that the data show by themselves"
         measure = f"χ²/dof = {said.reduced:.4g} ({said.freedom} degrees of freedom{noise})"
         if self.answer == BAD:

@@ -61,7 +61,7 @@ def without_spikes(problem: Problem) -> Problem | None:
         far = spikes(model.seen, noise.sigma)
         if far.any():
             models[i] = replace(model, seen=replace(model.seen, values=np.where(far, np.nan, model.seen.values)))
-            noises[i] = Noise(noise.known, noise.sigma, rounding=noise.rounding)
+            noises[i] = Noise(noise.known, noise.sigma, least=noise.least)
             some = True
     return replace(problem, models=models, noises=noises, last=None, recent=None) if some else None
 

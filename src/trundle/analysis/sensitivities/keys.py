@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeVar, get_args
 
-from ...errors import InvalidValueError, UnknownNameError
+from ...errors import InvalidValueError, SolverError, TrundleError, UnknownNameError
 from ...mechanics.duals import Dual
 from ...mechanics.placing import Placing
 from ...mechanics.scalars import is_number
@@ -129,7 +129,12 @@ def varied(scenario: ScenarioFile, wanted: Sequence[Key]) -> tuple[RollingSystem
     }
     model = replaced(scenario, duals)
     system = model.system()
-    return system, Placing(system, **model.start.arguments()).state(checked=False)
+    try:
+        return system, Placing(system, **model.start.arguments()).state(checked=False)
+    except TrundleError:
+        raise
+    except (ArithmeticError, ValueError):  # a root of less than 0: there is no surface at that place
+        raise SolverError("No start has these numbers: its place is beyond the surface, or a formula's end.") from None
 
 
 def replaced(scenario: Model, values: Mapping[str, Any]) -> Model:

@@ -11,6 +11,7 @@ from typing import Any
 from warnings import catch_warnings, filterwarnings
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.artist import allow_rasterization
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -19,6 +20,8 @@ from matplotlib.figure import Figure
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#007A5A"
 SKY, ORANGE, PURPLE = "#56B4E9", "#E69F00", "#CC79A7"
 INK, GREY, FAINT, TABLE = "#1A1A1A", "#5F5F5F", "#D9D9D9", "#F4F3EE"
+# Shares of how far a path is from the origin: what moves less is at rest, and the side of the square that shows it
+_LEAST, _OF_REST = 1e-6, 0.1
 
 _LOOK: dict[str, Any] = {
     "font.family": "sans-serif",
@@ -81,6 +84,26 @@ def look() -> Iterator[None]:
     """Put the figures' own settings in force, and the user's back afterwards."""
     with mpl.rc_context(_settings()):  # type: ignore[arg-type]  # the keys are rcParams' own
         yield
+
+
+def extent(low: Any, high: Any) -> float:
+    """Return the side of the square in which a path is shown: of what stays where it is, a part of how far away it is.
+
+    Examples
+    --------
+    >>> extent((0.0, 0.0), (3.0, 1.0)), extent((0.5, 0.0), (0.5, 0.0)), extent((0.0, 0.0), (0.0, 0.0))
+    (3.0, 0.05, 1e-09)
+    """
+    corners = np.array([low, high], dtype=float)
+    side, away = float(np.ptp(corners, axis=0).max()), float(np.abs(corners).max())
+    return max(side if side > _LEAST * away else _OF_REST * away, 1e-9)
+
+
+def show_square(ax: Axes, low: Any, high: Any, side: float) -> None:
+    """Set the axes about the middle of two corners, to one scale."""
+    middle, half = (np.asarray(low) + high) / 2, 0.56 * max(float(np.max(np.subtract(high, low))), side)
+    ax.set_xlim(middle[0] - half, middle[0] + half)
+    ax.set_ylim(middle[1] - half, middle[1] + half)
 
 
 class Sheet(Figure):
