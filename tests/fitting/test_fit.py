@@ -363,12 +363,14 @@ run = { duration = 1, every = 0.01 }
 """)
     samples = dome.run().samples
     columns = {"t": samples.time} | dict(zip("xyz", samples.position.T, strict=True))
-    try:
+    if key == "support.radius":
         fit = tr.fit(columns, dome, free=[key])
-    except tr.TrundleError as error:
-        assert "has no derivative" in str(error)
+        assert fit.answer == "bad"
+        assert str(fit)
+        assert fit.plot()
     else:
-        assert fit.answer == "bad" and str(fit) and fit.plot()
+        with pytest.raises(tr.SolverError, match="has no derivative"):
+            tr.fit(columns, dome, free=[key])
     assert capfd.readouterr() == ("", "")
 
 
@@ -383,9 +385,10 @@ run = { duration = 1, every = 0.05 }
     samples = asked.run().samples
     columns = {"t": samples.time} | dict(zip("xyz", samples.position.T, strict=True))
     fit = tr.fit(columns, asked, free=["body.mass"])
-    assert fit.answer == "cannot decide" and "body.mass" in fit.undetermined[0].names
+    assert fit.answer == "cannot decide"
+    assert "body.mass" in fit.undetermined[0].names
     low, high = fit.plot().axes[0].get_xlim()
-    assert low < 0.2 < high and high - low > 0.01
+    assert low < 0.19 < 0.21 < high
 
 
 def test_a_number_stops_at_its_limit() -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from . import report
 from .classes import CLASSES
+from .commands import COMMANDS
 from .running import BAD, LIMIT, Outcome, outcomes
 
 
@@ -22,7 +23,7 @@ def main(words: list[str] | None = None) -> int:
     """Try out scenarios, print the table and the causes; return 1 where some ended badly, else 0."""
     asked = _arguments(words)
     with tempfile.TemporaryDirectory(prefix="fuzz-") as working:
-        ended = outcomes(_cases(asked), Path(working), asked.workers, asked.limit, with_command=asked.commands)
+        ended = outcomes(_cases(asked), Path(working), asked.workers, asked.limit, asked.commands)
         found = list(_told(ended, asked))
     found.sort(key=lambda one: (list(CLASSES).index(one.name), one.seed))
     if asked.one:
@@ -48,7 +49,12 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--limit", type=float, default=LIMIT, help="CPU seconds for a scenario and its card.")
     said = "Try one of the other commands, too, on what passes."
     parser.add_argument("--commands", action=argparse.BooleanOptionalAction, default=True, help=said)
+    said = 'Only those that begin so, as "check"; may be repeated.'
+    parser.add_argument("--command", dest="begin", action="append", default=[], help=said)
     asked = parser.parse_args(words)
+    asked.commands = tuple(one for one in COMMANDS if asked.commands and one.startswith(tuple(asked.begin) or ""))
+    if asked.begin and not asked.commands:
+        parser.error(f"no command begins with {' or '.join(asked.begin)}")
     asked.classes = asked.classes or list(CLASSES)
     if asked.one and len(asked.classes) != 1:
         parser.error("--one needs one --class, and --seed")

@@ -6,7 +6,6 @@ import contextlib
 import shlex
 import tempfile
 from pathlib import Path
-from random import Random
 from typing import Any
 
 from .drawing import seeded
@@ -45,11 +44,6 @@ COMMANDS = (
     "run S",
     "run S --method runge-kutta",
 )
-
-
-def drawn(random: Random) -> str:
-    """Return one of the commands."""
-    return random.choice(COMMANDS)
 
 
 def status_of(command: str, text: str, run: Any) -> int:

@@ -69,7 +69,7 @@ class Outcome:
 
 
 def try_out(
-    name: str, seed: int, say: Callable[..., None], limit: float = LIMIT, *, with_command: bool = False
+    name: str, seed: int, say: Callable[..., None], limit: float = LIMIT, commands: tuple[str, ...] = ()
 ) -> None:
     """Draw scenarios of a class until one runs, and say what comes of it.
 
@@ -81,19 +81,18 @@ def try_out(
         Takes what is known so far as keywords: whoever kills this process knows it then.
     limit : float
         CPU seconds for a scenario and its card: what takes longer has hung, for whoever waits.
-    with_command : bool
-        Whether one of the other commands is tried on it, too.
+    commands : tuple of str
+        The other commands, of which one is tried on it, too.
     """
     import tomli_w
 
     from trundle.errors import TrundleError
 
     from .classes import candidate, mended
-    from .commands import drawn
     from .drawing import seeded
 
     random, refusals = seeded(name, seed), dict[str, int]()
-    command = drawn(seeded("command", seed)) if with_command else ""
+    command = seeded("command", seed).choice(commands) if commands else ""
     tables = candidate(name, random)
     for _ in range(_CANDIDATES):
         text = tomli_w.dumps({"title": f"{name} {seed}", **{key: tables[key] for key in tables if key != "title"}})
@@ -300,7 +299,7 @@ def _warm_up() -> None:
 
 
 def outcomes(
-    cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT, *, with_command: bool = False
+    cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT, commands: tuple[str, ...] = ()
 ) -> Iterator[Outcome]:
     """Try out seeds of classes, some at a time.
 
@@ -314,8 +313,8 @@ def outcomes(
         How many at a time.
     limit : float
         CPU seconds for a scenario.
-    with_command : bool
-        Whether one of the other commands is tried on each, too.
+    commands : tuple of str
+        The other commands, of which one is tried on each, too.
 
     Yields
     ------
@@ -332,7 +331,7 @@ def outcomes(
             if case is None:
                 break
             slot = free.pop()
-            work = partial(try_out, *case, limit=limit, with_command=with_command)
+            work = partial(try_out, *case, limit=limit, commands=commands)
             child = Child(work, folder / f"worker-{slot}", _HEARD_OUT * limit)
             running[child.process] = (*case, child, slot)
         if not running:
