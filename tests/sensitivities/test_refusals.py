@@ -105,6 +105,19 @@ def test_turning_that_begins_against_a_resistance_has_no_derivative() -> None:
     assert tr.sensitivities(tr.Scenario.read(rests), "start.position").passed
 
 
+@pytest.mark.parametrize("phase", ["-90 deg", "90 deg"])
+@pytest.mark.parametrize("rate", [-9.0, 20.0])
+def test_nor_has_what_a_table_that_stands_for_an_instant_turns(phase: str, rate: float) -> None:
+    """There cos 90° is a rounding and not 0: beside it the body does not turn, however little else moves."""
+    rocks = {"kind": "rock", "amplitude": 1.4, "rate": rate, "phase": phase, "axis": [0.3, 0.2, 1.0]}
+    support = {"kind": "plane", "friction": 0.27, "motion": rocks}
+    loads = [{"kind": "rolling-resistance", "offset": 0.001}]
+    run = {"duration": 0.05, "every": 0.01}
+    begins = tr.Scenario.read(level(support=support, loads=loads, run=run, start={"position": [0.1, 0.02]}))
+    assert "does not turn at the start" in refusal("support.motion.phase", begins)
+    assert tr.sensitivities(begins, "support.motion.amplitude").passed
+
+
 @pytest.mark.parametrize("friction", [None, 0.2, 0.0])
 @pytest.mark.parametrize("velocity", [[0.3, 0.1, 0.0], [0.0, 0.0, 0.0]])
 def test_a_velocity_off_the_support_has_no_derivative_where_a_body_touches(

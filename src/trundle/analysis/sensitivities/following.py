@@ -118,29 +118,30 @@ def method_for(system: RollingSystem) -> Any:
 def check_start(system: RollingSystem, begins: PhaseStart, first: State, names: Sequence[str]) -> None:
     """Refuse numbers of a start that alone would make slip what rolls, lift what slips, or turn what does not turn."""
     given = ContactState.of(system, first)
+    scale = given.scale(system)
     turning = state_turning(given.contact, given.Omega)
-    if system.resisted and value_of(turning.norm() * given.arm) <= SLIP_TOLERANCE * given.speed:
+    if system.resisted and value_of(turning.norm() * given.arm) <= SLIP_TOLERANCE * scale:
         rule = "must name numbers that change alone without turning a body that does not turn at the start"
         remedy = "A resistance acts against either way at once, and so there is no derivative."
-        _refuse(turning * given.arm, given, names, rule, remedy)
+        _refuse(turning * given.arm, given, scale, names, rule, remedy)
     if begins.law.code in (ROLLING, RESTING):
         at = begins.law.unpack(system, begins.time, begins.state_vector)  # its slope, too: a support may be faster then
         rule = "must name numbers that change alone without making a body slip that rolls at the start"
         remedy = 'Both velocities are given: let one follow, by `spin` or by `velocity = "rolling"`.'
-        _refuse(given.V - at.V, given, names, rule, remedy)
+        _refuse(given.V - at.V, given, scale, names, rule, remedy)
     elif begins.law.code == SLIPPING:
         rule = "must name numbers that change alone without lifting a body that slips at the start, or pressing it on"
         remedy = "It would come off one way and land the other. Let it start above the support, by `height`."
-        _refuse(given.contact.normal * given.approach, given, names, rule, remedy)
+        _refuse(given.contact.normal * given.approach, given, scale, names, rule, remedy)
 
 
-def _refuse(apart: Vector, at: ContactState, names: Sequence[str], rule: str, remedy: str) -> None:
-    """Refuse a number that changes what must stay nothing, m/s."""
+def _refuse(apart: Vector, at: ContactState, scale: float, names: Sequence[str], rule: str, remedy: str) -> None:
+    """Refuse a number that changes what must stay nothing, m/s, beside a speed of the motion."""
     count = len(names)
     rows = [slopes_of(part, count) for part in apart]
     sizes = [slopes_of(part, count) for part in (*at.V, *at.Omega)]
     for j, name in enumerate(names):
-        if max(abs(row[j]) for row in rows) > _SLIPS * max(at.speed, *(abs(row[j]) for row in sizes)):
+        if max(abs(row[j]) for row in rows) > _SLIPS * max(scale, *(abs(row[j]) for row in sizes)):
             raise InvalidValueError("wrt", rule, name, remedy)
 
 
