@@ -351,6 +351,31 @@ def test_a_run_of_ones_own_is_a_good_fit_however_it_moves(name: str) -> None:
     assert best is None, str(best)
 
 
+@pytest.mark.parametrize(
+    ("body", "start", "ways"),
+    [
+        ("half-cylinder", {"roll": "60 deg"}, 1),
+        ("half-cylinder", {"roll": "-40 deg", "velocity": [0.1, 0]}, 2),
+        ("cylinder", {"velocity": [0.3, -0.4]}, 2),
+        ("cylinder", {"velocity": [0.3, 0], "orientation": [1, 1, 0, 0]}, 1),
+    ],
+)
+def test_a_cylinder_starts_across_its_axis(body: str, start: dict[str, Any], ways: int) -> None:
+    """It has no spin, and lying still or laid already but one way to go: no other may stand in the fit's way."""
+    ratio = {"inertia_ratio": 0.5} if body == "cylinder" else {}
+    tables: dict[str, Any] = {"body": {"kind": body, "radius": 0.1, "mass": 2.0, **ratio}, "support": {"kind": "plane"}}
+    tables |= {"start": {"position": [0, 0], **start}, "run": {"duration": 1.2, "every": 0.01}}
+    asked = tr.Scenario.read(tables)
+    samples = asked.run().samples
+    columns = {"t": samples.time} | dict(zip("xyz", samples.position.T, strict=True))
+    columns |= dict(zip(("wx", "wy", "wz"), samples.angular_velocity.T, strict=True))
+    fit = tr.fit(columns, asked, free=["body.radius"])
+    assert fit.answer == "good", str(fit)
+    assert fit["body.radius"].value == pytest.approx(0.1, abs=1e-5)
+    assert [one.name for one in fit.estimates if "spin" in one.name] == []
+    assert len([one.name for one in fit.estimates if "velocity" in one.name]) == ways
+
+
 @pytest.mark.parametrize("key", ["body.mass", "support.radius", "gravity"])
 @pytest.mark.filterwarnings("error")
 def test_where_the_surface_begins_a_fit_ends_in_words(key: str, capfd: pytest.CaptureFixture[str]) -> None:

@@ -166,8 +166,19 @@ def unknowns(
 
 
 def _of_start(scenario: ScenarioFile, seen: Observations) -> tuple[str, ...]:
-    """Return the numbers of a start that are found: its spin where the turning of the body was measured."""
-    return (*START, "start.spin") if seen.turning and scenario.start.spin is not None else START
+    """Return the numbers of a start that are found: its spin where the turning of the body was measured.
+
+    A cylinder has no spin. It is laid across its way, and one that is laid already, or lies still, has but one.
+    """
+    start: Any = scenario.start
+    if scenario.system().body.shape.axis is None:
+        return (*START, "start.spin") if seen.turning and start.spin is not None else START
+    velocity = [float(part) for part in start.velocity[:2]]
+    laid = start.orientation is not None or start.attitude is not None
+    if not laid and any(velocity):
+        return START
+    ways = [i for i in range(2) if velocity[i]] or ([] if laid else [0])
+    return ("start.position", *(f"start.velocity[{i}]" for i in ways))
 
 
 def _of_gyroscope(name: str, seen: Sequence[Observations]) -> list[Unknown]:
