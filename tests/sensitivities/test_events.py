@@ -12,6 +12,8 @@ import trundle as tr
 from trundle.analysis.sensitivities import following
 from trundle.analysis.sensitivities.keys import chosen
 from trundle.mechanics.duals import Dual, slopes_of, value_of
+from trundle.solve import tracing
+from trundle.solve.creeping import CreepingLaw
 
 BALL = {"kind": "solid-sphere", "radius": 0.03, "mass": 0.2}
 ELLIPSOID = {"kind": "ellipsoid", "semi_axes": [0.1, 0.07, 0.05], "mass": 0.4}
@@ -460,3 +462,26 @@ def test_when_a_ball_grips_has_the_derivative_of_its_formula(draw: int) -> None:
     slip = np.array([v_x - 0.03 * Omega_y, v_y + 0.03 * Omega_x])  # s = V + Ω×ρ, with ρ = −a e_z
     per = slip / np.linalg.norm(slip) / (mu * 9.80665 * (1 + 1 / k))
     assert found.event_time.values == pytest.approx(np.array([[per[0], 0.03 * per[1]]]), rel=1e-9, abs=1e-12)
+
+
+def test_slip_that_begins_at_each_landing_is_traced_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where and when each begins are numbers, of the variational law as of the law itself."""
+    traced: list[tuple[Any, Any, Any]] = []
+
+    def counted(system: Any, law: Any, own: Any) -> Any:
+        traced.append((type(system), type(law), getattr(law, "kind", None)))
+        return follows(system, law, own)
+
+    follows = tracing._traced
+    monkeypatch.setattr(tracing, "_traced", counted)
+    tracing._memory.cache_clear()
+    bouncing = {
+        "body": {"kind": "solid-sphere", "radius": 0.025, "mass": 0.5},
+        "support": {"kind": "cylinder", "radius": 0.125, "tilt": "90 deg", "friction": 0.3, "restitution": 0.6},
+        "start": {"position": [0.17, 0.0], "velocity": [0.8, 0.0, 0.27]},
+        "run": {"duration": 1.5, "every": 0.05},
+    }
+    found = tr.sensitivities(tr.Scenario.read(bouncing), ["start.velocity[0]"])
+    assert (found.data.kind == "land").sum() > 4
+    assert any(kind is CreepingLaw for _, _, kind in traced)
+    assert len(traced) == len(set(traced))

@@ -23,6 +23,7 @@ from .contact_state import ContactState
 from .laws import Law, Numbers
 from .samples import Array
 
+_OF_LAW = "of_law_"  # begins the names of its numbers
 _ASIDE = 1e-7  # of a parameter, in SI: where a symmetry is no more, whatever the size
 
 
@@ -131,14 +132,19 @@ class VariationalLaw(Law):
 
     def __init__(self, law: Law, size: int, count: int) -> None:
         super().__init__(law.weightless)
-        self.kind, self.settings = type(law), tuple(vars(law).items())
+        of_law = vars(law).items()
+        self.kind, self.settings = type(law), tuple((name, one) for name, one in of_law if not isinstance(one, float))
         self.size, self.count = size, count
+        # Numbers of the law are numbers of this one: laws that differ by them alone are traced once.
+        vars(self).update({_OF_LAW + name: one for name, one in of_law if isinstance(one, float)})
 
     @property
     def law(self) -> Law:
         """The law whose variational equations they are."""
         found = object.__new__(self.kind)
         vars(found).update(self.settings)
+        own = {name.removeprefix(_OF_LAW): one for name, one in vars(self).items() if name.startswith(_OF_LAW)}
+        vars(found).update(own)
         return found
 
     # What integrators ask of a law is that of the law itself, for its own numbers.
