@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import TrundleError
+from ...errors import SolverError, TrundleError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.contact import contact_at
 from ...mechanics.system import RollingSystem, State
@@ -15,7 +15,7 @@ from ...solve import methods
 from ...solve.samples import Samples
 from .chance import longest
 from .examining import INSTANTS, LAW_SHARE
-from .motion import Motion, motion_of
+from .motion import Motion, instants, motion_of
 from .record import Array, ExternalTrajectory
 from .series import Series
 from .slopes import SIGMAS
@@ -40,6 +40,7 @@ class OwnRun:
     after: float = float("nan")  # when the last instant is, s
     distance: float = float("nan")  # how far apart the two are then, m
     angle: float = float("nan")  # how far turned, rad; not a number where they gave no orientation
+    start: State | None = None  # from which it goes all along
 
 
 @dataclass(frozen=True)
@@ -62,25 +63,53 @@ class _Start:
 
 
 def own_run(
-    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None
+    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None, *, closest: bool = False
 ) -> tuple[Series | None, OwnRun]:
-    """Run the system from their start, as it is or as near as its noise allows; follow how far theirs moves away."""
+    """Run the system from their start, as near as its noise allows, or as it is; follow how far theirs moves away.
+
+    The second is tried where the first fails, or where the closest is asked for.
+    """
     n = theirs.time.size
     at = motion_of(system, theirs, start, np.unique(np.linspace(0, n - 1, min(n, INSTANTS)).round().astype(int)))
-    where = theirs.position[at.index]
     parts = slice(None) if theirs.height_given else slice(0, 2)
-    try:
-        begin = _begin(system, theirs, at)
-        count, method = _as_far_as_may_be(begin)
-        ours, moved = _nearest(begin, where, parts, count)
-    except TrundleError as error:
-        return None, OwnRun(np.empty((0, 3)), remark=str(error).partition("\n")[0])
-    except NotImplementedError:  # a surface of somebody's own
-        return None, OwnRun(np.empty((0, 3)), remark="the surface has no coordinates to place a body by")
+    found, remark = [], ""
+    for first in (at, _as_written(system, theirs, at)):  # samples far apart show no noise, and are exact as they are
+        try:
+            found.append(_followed(system, theirs, first, tolerance, parts))
+        except TrundleError as error:
+            remark = remark or str(error).partition("\n")[0]
+        except NotImplementedError:  # a surface of somebody's own
+            remark = "the surface has no coordinates to place a body by"
+        if found and found[-1][0].worst <= 1 and not closest:
+            break
+    if not found:
+        return None, OwnRun(np.empty((0, 3)), remark=remark)
+    return min(found, key=lambda one: one[0].worst)
+
+
+def _as_written(system: RollingSystem, theirs: ExternalTrajectory, at: Motion) -> Motion:
+    """Return their motion by what they wrote at its instants, with no mean over samples."""
+    names = ("position", "velocity", "angular_velocity", "orientation")
+    arrays = {name: getattr(theirs, name) for name in names}
+    parts = {name: getattr(at, name) if one is None else one[at.index] for name, one in arrays.items()}
+    now = instants(system, at.time, parts, None if at.turning_known else at.spin)
+    return replace(at, **{name: getattr(now, name) for name in (*names, "contact")})
+
+
+def _followed(
+    system: RollingSystem, theirs: ExternalTrajectory, at: Motion, tolerance: float, parts: slice
+) -> tuple[Series, OwnRun]:
+    """Follow ours from one of their starts."""
+    where = theirs.position[at.index]
+    begin = _begin(system, theirs, at)
+    most, method = _as_far_as_may_be(begin)
+    ours, moved, numbers = _nearest(begin, where, parts, most)
     count = ours.time.size
     if count < 2:
-        return None, OwnRun(np.empty((0, 3)), remark="ours leaves the support at once")
+        raise SolverError("ours leaves the support at once")
     found = _apart(theirs, at, ours, method, parts)
+    if count == at.time.size:
+        found = replace(found, start=_state(system, at, numbers))
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(at.position, axis=0), axis=1))])[:count]
     size = max(_extent(at), float(way[-1]) * 1e-3, 1e-9 * at.arm)
     asked = LAW_SHARE * tolerance * (size + way)
@@ -142,8 +171,10 @@ def _as_far_as_may_be(begin: _Start) -> tuple[int, str]:
         count = min(2 * count, at.time.size)
 
 
-def _nearest(begin: _Start, where: Array, parts: slice, count: int) -> tuple[Samples, Array]:
+def _nearest(begin: _Start, where: Array, parts: slice, count: int) -> tuple[Samples, Array, Array]:
     """Return the run that is nearest to theirs, of those whose starts theirs might be, and what the start may do to it.
+
+    The numbers of that start come last.
 
     Gauss's and Newton's method; what is known of the start stands beside what the path says, each by its noise.
     """
@@ -155,7 +186,7 @@ def _nearest(begin: _Start, where: Array, parts: slice, count: int) -> tuple[Sam
         beside = [begin.run(numbers + begin.step[i] * np.eye(_NUMBERS)[i], ours.time.size)[0] for i in which]
         m = min([ours.time.size, *(run.time.size for run in beside)])
         if m < 2 or not which.size:
-            return ours.part(slice(0, m)), moved[:m]
+            return ours.part(slice(0, m)), moved[:m], numbers
         slopes = [(run.position[:m] - ours.position[:m]) / begin.step[i] for run, i in zip(beside, which, strict=True)]
         moved = np.sqrt(
             sum((np.linalg.norm(s, axis=1) * begin.spread[i]) ** 2 for s, i in zip(slopes, which, strict=True))
@@ -165,10 +196,10 @@ def _nearest(begin: _Start, where: Array, parts: slice, count: int) -> tuple[Sam
         far = float(np.linalg.norm(path - ours.position[:m], axis=1).max()) > _STRAIGHT * _extent(begin.at)
         numbers = numbers + changed
         if not far:
-            return replace(ours.part(slice(0, m)), position=path), moved
+            return replace(ours.part(slice(0, m)), position=path), moved, numbers
         ours, _ = begin.run(numbers, m)
         moved = moved[: ours.time.size]
-    return ours, moved
+    return ours, moved, numbers
 
 
 def _change(begin: _Start, numbers: Array, slopes: Array, apart: Array) -> Array:
