@@ -138,6 +138,16 @@ EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[
         ("land", "land"),
         (0.02, 0.08, 0.12),
     ),
+    "an ellipsoid lands straight, and friction cannot hold it": (
+        {
+            "body": ELLIPSOID,
+            "support": {"kind": "plane", "friction": 0.05, "restitution": 0.4},
+            "start": {"position": [0, 0], "velocity": [0, 0], "height": 0.05, "attitude": [0.4, 0.5, 0.3]},
+        },
+        ("support.friction", "support.restitution", "start.attitude[1]", "body.mass", "gravity"),
+        ("land",),
+        (0.05, 0.11, 0.13),
+    ),
     "an ellipsoid lands and sticks": (
         {"body": ELLIPSOID, "support": {"kind": "plane", "restitution": 0.5}, "start": LEANING},
         ("support.restitution", "body.semi_axes[0]", "start.attitude[1]", "start.velocity[1]", "start.height"),

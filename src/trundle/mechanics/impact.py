@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 from ..errors import SolverError
 from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
-from .duals import value_of
+from .duals import has_duals, value_of, values_of
 from .onset import onset
 from .records import frozen_record
-from .scalars import as_float, is_zero, less, namespace
+from .scalars import Scalar, as_float, is_zero, less, namespace
 from .slipping import response
 from .turning_slip import TurningSlip
 
@@ -154,6 +154,12 @@ def _along(basis: tuple[Vector, Vector, Vector], v: Vector) -> Vector:
     return Vector(as_float(v.dot(first)), as_float(v.dot(second)), as_float(v.dot(n)))
 
 
+def _pushed_along(M: Matrix, mu: Scalar, c: Any, s: Any) -> tuple[Any, Any]:
+    """Return the change of slip for each unit of P, along both tangents, against friction on the way (c, s)."""
+    first, second, _ = M.rows
+    return first.z - mu * (first.x * c + first.y * s), second.z - mu * (second.x * c + second.y * s)
+
+
 def _length(v: Vector) -> Any:
     """Return the length of the part of a vector along the support."""
     return namespace(v.x, v.y).hypot(v.x, v.y)
@@ -267,21 +273,20 @@ class _Course:
         c, s = self._beginning()
         return Vector(-self.mu * c, -self.mu * s, 1.0)
 
-    def _beginning(self) -> tuple[float, float]:
+    def _beginning(self) -> tuple[Scalar, Scalar]:
         """Return the direction in which slipping begins: the one that its own friction leads along."""
-
-        def growth(c: Any, s: Any) -> tuple[Any, Any, float]:
-            first, second, _ = self.M.rows
-            return (
-                first.z - self.mu * (first.x * c + first.y * s),
-                second.z - self.mu * (second.x * c + second.y * s),
-                1.0,
-            )
-
-        found = onset(growth)
+        M, mu = values_of((self.M, self.mu))
+        found = onset(lambda c, s: (*_pushed_along(M, mu, c, s), 1.0))
         if not found:
             raise SolverError("A landing jams: no direction of slipping leads on. Use less friction.")
-        return found[0][1]
+        c, s = found[0][1]
+        if not has_duals((self.M, self.mu)):
+            return c, s
+        # A root that was searched for has no slopes: those of Newton's method from there.
+        first, second = _pushed_along(self.M, self.mu, c, s)
+        x, y = (now - along for now, along in zip(_pushed_along(M, mu, -s, c), (M.rows[0].z, M.rows[1].z), strict=True))
+        turned = (s * first - c * second) / (c * y - s * x - value_of(c * first + s * second))
+        return c - s * turned, s + c * turned
 
     def _straight(self, direction: Vector, still: float = math.inf) -> Vector:
         """Go on with a fixed direction of the impulse to the end of compression, or of the impact.

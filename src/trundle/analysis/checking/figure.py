@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from trundle.wording import Unit, unit_for, with_unit
 
-from ...views.plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, extent, look, show_square
+from ...views.plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, extent, look, square
 
 if TYPE_CHECKING:
     from .result import Check
@@ -116,4 +116,5 @@ def _window(ax: Axes, theirs: Any, ours: Any) -> None:
     if len(ours):
         near = np.all((ours > low - 2 * span) & (ours < high + 2 * span), axis=1)
         low, high = (f([edge, *ours[near]], axis=0) for f, edge in ((np.min, low), (np.max, high)))
-    show_square(ax, low, high, span)
+    (left, bottom), (right, top) = square(low, high, span)
+    ax.set(xlim=(left, right), ylim=(bottom, top))

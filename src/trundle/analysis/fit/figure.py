@@ -19,7 +19,7 @@ from ...views.plots.sheet import (
     Sheet,
     extent,
     look,
-    show_square,
+    square,
 )
 from . import report
 from .observations import unit_of
@@ -58,7 +58,8 @@ def _path(fit: Fit, predicted: list[Any], panel: Any) -> None:
         for places in (values[:, [x, y]], found[:, [x, y]]):
             low, high = np.fmin(low, np.nanmin(places, axis=0)), np.fmax(high, np.nanmax(places, axis=0))
     if (side := extent(low, high)) > np.max(high - low):  # it stays where it is
-        show_square(panel, low, high, side)
+        panel.update_datalim(square(low, high, side))
+        panel.autoscale_view()
     panel.set_aspect("equal", adjustable="datalim")
     panel.set(xlabel="x, m", ylabel="y, m")
     _legend(panel, "left")

@@ -23,7 +23,7 @@ COLUMNS |= {ours: kind_of(read) for read, ours in GYROSCOPE.items()}
 _FEWEST = 4  # rows
 _HALF = 4  # rows to either side of one, whose polynomial shows the noise
 _DEGREE = 3
-_COMPUTED = 1e-12  # share of the largest value by which a computed motion may be off
+_COMPUTED = 1e-11  # share of the largest value by which a computed motion may be off
 
 
 def unit_of(column: str) -> str:

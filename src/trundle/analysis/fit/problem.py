@@ -148,7 +148,8 @@ class Problem:
         sums = [0.0]
         for i, (model, noise) in enumerate(zip(self.models, self.noises, strict=True)):
             values = model.seen.values[: self.rows(i)]
-            apart = values - np.nanmean(np.where(np.isfinite(values), values, np.nan), axis=0, keepdims=True)
+            values = np.where(np.isfinite(values), values, np.nan)
+            apart = values - np.nansum(values, axis=0) / np.maximum(np.isfinite(values).sum(axis=0), 1)
             with np.errstate(invalid="ignore"):
                 sums.append(float(np.nansum((apart / noise.sigma[: self.rows(i)]) ** 2)))
         return float(np.sqrt(sum(sums)))

@@ -99,11 +99,16 @@ def extent(low: Any, high: Any) -> float:
     return max(side if side > _LEAST * away else _OF_REST * away, 1e-9)
 
 
-def show_square(ax: Axes, low: Any, high: Any, side: float) -> None:
-    """Set the axes about the middle of two corners, to one scale."""
+def square(low: Any, high: Any, side: float) -> Any:
+    """Return the corners of a square about the middle of two others, no smaller than these need.
+
+    Examples
+    --------
+    >>> square((0.0, 0.0), (2.0, 1.0), 1.0).round(2).tolist()
+    [[-0.12, -0.62], [2.12, 1.62]]
+    """
     middle, half = (np.asarray(low) + high) / 2, 0.56 * max(float(np.max(np.subtract(high, low))), side)
-    ax.set_xlim(middle[0] - half, middle[0] + half)
-    ax.set_ylim(middle[1] - half, middle[1] + half)
+    return np.array([middle - half, middle + half])
 
 
 class Sheet(Figure):
