@@ -495,3 +495,27 @@ def test_slip_that_begins_at_each_landing_is_traced_once(monkeypatch: pytest.Mon
     assert (found.data.kind == "land").sum() > 4
     assert any(kind is CreepingLaw for _, _, kind in traced)
     assert len(traced) == len(set(traced))
+
+
+def test_a_law_that_grows_singular_next_to_the_end_of_a_formula_has_its_derivative() -> None:
+    """A step back from there leads to where log has no value."""
+    tables = {
+        "body": {
+            "kind": "disc",
+            "radius": 0.0340577,
+            "mass": 0.0123712,
+            "centre": [0.00454312, -0.00988888, 0.0179914],
+        },
+        "support": {
+            "kind": "height-field",
+            "formula": "0.0486609*sin(7.14858*x)*cos(3.18754*x) - 0.10237*log(0.3 + x)",
+            "restitution": 0.0259233,
+            "motion": {"kind": "precessing-tilt", "angle": -0.18634, "rate": 0.37784},
+        },
+        "start": {"position": [0.058236, 0.0110493], "velocity": [-0.0397163, 0, 1.7938]},
+        "run": {"duration": 0.53, "every": 0.02},
+    }
+    found = tr.sensitivities(tr.Scenario.read({"gravity": 9.80665, **tables}), ["gravity"], compared=False)
+    ends = [tr.Scenario.read({"gravity": 9.80665 + h, **tables}).run("taylor").events[-1].time for h in (1e-5, -1e-5)]
+    assert found.data.kind.values[-1] == "curved"
+    assert float(found.event_time.values[-1, 0]) == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=1e-5)

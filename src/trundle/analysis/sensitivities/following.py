@@ -334,7 +334,7 @@ class VariationalRun:
         try:
             before = law.rk4_step(self.system, stop.time, numbers, -wait)
             stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
-        except ArithmeticError:  # a step back from where the law is singular leads anywhere
+        except (ArithmeticError, ValueError):  # a step back from where the law is singular leads anywhere
             return
         if not abs(falls) * wait > _GRAZES * abs(float(stops[stop.name])):
             raise no_derivative(stop.time, f"the event there ({stop.name}) is only just reached")
