@@ -21,6 +21,7 @@ from .series import Series
 from .slopes import SIGMAS
 
 _MOST_RADIANS = 1e4  # of turning that a run of ours follows
+_MOST_EVENTS = 20
 _FIRST = 4  # instants that are tried first
 _PLACES, _SPEEDS, _SPIN, _TURNS = slice(0, 2), slice(2, 4), 4, slice(5, 8)  # of the numbers of a start
 _NUMBERS = 8
@@ -164,6 +165,8 @@ def _as_far_as_may_be(begin: _Start) -> tuple[int, str]:
     count = min(_FIRST, at.time.size)
     while True:
         samples, method = begin.run(np.zeros(_NUMBERS), count)
+        if len(samples.events) > _MOST_EVENTS:
+            raise SolverError(f"ours comes to {len(samples.events)} events, and the least makes others of these")
         span = float(samples.time[-1] - at.time[0])
         turned = 4 * span * float(np.linalg.norm(samples.angular_velocity, axis=1).max())
         if count == at.time.size or samples.time.size < count or turned > _MOST_RADIANS:

@@ -17,6 +17,7 @@ _OUTLIER = 1e-3  # chance of one outlier among all values, were the noise normal
 _MOST_ROWS = 12
 _REMEDY = "; leave these out, or take a loss that bears them, such as soft_l1"
 _FEW = 0.05  # of all values: more are no outliers, but a law that is wrong
+_NOTHING = 1e-3  # of the noise: what is less is where the search for the minimum ended
 _OF_SCATTER = 3.0  # times the spread of χ²: noise that was estimated is itself not better known
 
 
@@ -144,6 +145,7 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
         typical = np.maximum(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), noise.least / noise.sigma)
         off_by = np.nanstd(z * noise.sigma, axis=0)
         small = (of_places(model.seen.columns) & (off_by <= model.accuracy)) | (off_by <= noise.least)
+        small |= off_by <= _NOTHING * np.nanmedian(noise.sigma, axis=0)
         for c in np.flatnonzero(~small):
             column = z[:, c][np.isfinite(z[:, c])]
             r, off = _memory(column)
