@@ -85,7 +85,7 @@ def _started(model: RunModel, values: Array, wanted: list[int], begun: dict[str,
         parts = [*state.position, *state.velocity]
         jacobian = np.array([slopes_of(parts[row], len(wanted)) for row in rows], dtype=float)
         if not np.isfinite(jacobian).all():
-            raise SolverError("The start has no derivative there.")
+            raise SolverError("The motion has no derivative there.")
         apart = np.array([value_of(parts[row]) for row in rows], dtype=float) - targets
         step = -np.linalg.lstsq(jacobian, apart, rcond=1e-9)[0]
         guess = guess + step
