@@ -21,7 +21,7 @@ from .series import Series
 from .slopes import SIGMAS
 
 _MOST_RADIANS = 1e4  # of turning that a run of ours follows
-_MOST_EVENTS = 20
+_MOST_EVENTS = 20  # of a run of ours: the least error of a start makes others of more
 _FIRST = 4  # instants that are tried first
 _PLACES, _SPEEDS, _SPIN, _TURNS = slice(0, 2), slice(2, 4), 4, slice(5, 8)  # of the numbers of a start
 _NUMBERS = 8
@@ -74,8 +74,9 @@ def own_run(
     at = motion_of(system, theirs, start, np.unique(np.linspace(0, n - 1, min(n, INSTANTS)).round().astype(int)))
     parts = slice(None) if theirs.height_given else slice(0, 2)
     found, remark = [], ""
-    for first in (at, _as_written(system, theirs, at)):  # samples far apart show no noise, and are exact as they are
+    for written in (False, True):  # samples far apart show no noise, and are exact as they are
         try:
+            first = _as_written(system, theirs, at) if written else at
             found.append(_followed(system, theirs, first, tolerance, parts))
         except TrundleError as error:
             remark = remark or str(error).partition("\n")[0]
@@ -166,7 +167,7 @@ def _as_far_as_may_be(begin: _Start) -> tuple[int, str]:
     while True:
         samples, method = begin.run(np.zeros(_NUMBERS), count)
         if len(samples.events) > _MOST_EVENTS:
-            raise SolverError(f"ours comes to {len(samples.events)} events, and the least makes others of these")
+            raise SolverError(f"ours comes to {len(samples.events)} events, too many to compare")
         span = float(samples.time[-1] - at.time[0])
         turned = 4 * span * float(np.linalg.norm(samples.angular_velocity, axis=1).max())
         if count == at.time.size or samples.time.size < count or turned > _MOST_RADIANS:
