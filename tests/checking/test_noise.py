@@ -105,6 +105,19 @@ def test_noise_alone_decides_nothing(samples: int) -> None:
     assert "They would look the same with" in checked.verdict
 
 
+@pytest.mark.parametrize("samples", [60, 300])
+@pytest.mark.parametrize("sigma", [1e-3, 1e-2, 5e-2])
+def test_where_it_holds_some_line_has_a_verdict(samples: int, sigma: float) -> None:
+    """A circle of 10 cm under 5 cm of noise held, though no line could be told: one mistake would have been too far."""
+    t, draw = np.linspace(0.0, 5.0, samples), np.random.default_rng(1)
+    x, y = (0.1 * f(t) + draw.normal(scale=sigma, size=samples) for f in (np.cos, np.sin))
+    checked = tr.check({"t": t, "x": x, "y": y}, system(3.5, 0.0))
+    told = [figure for figure in checked.figures if figure.passed is not None]
+    assert checked.answer == ("holds" if told else "cannot decide"), str(checked)
+    drawn = [ax.get_title(loc="right") for ax in checked.plot().axes]
+    assert drawn.count("within its bound") == len(told), drawn
+
+
 @pytest.mark.parametrize("rate", [2.0, 10.0, 30.0])
 def test_a_fast_motion_is_not_taken_for_noise(rate: float) -> None:
     t = np.arange(0.0, 4.0, 0.01)

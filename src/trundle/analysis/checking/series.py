@@ -9,6 +9,8 @@ import numpy as np
 
 from .slopes import Array
 
+_TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
+
 
 @dataclass(frozen=True)
 class Series:
@@ -65,6 +67,11 @@ class Series:
     def room(self) -> float:
         """What is usually allowed, as a share of the size."""
         return float(np.median(self.bound) / self.size)
+
+    @property
+    def tells(self) -> bool:
+        """Whether its bound is so small that to be within it means anything."""
+        return self.room <= _TELLS
 
     @property
     def first_failure(self) -> float | None:

@@ -31,7 +31,6 @@ from .series import Series
 from .spinning import acts, fitted_spin
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
-_TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
 _LATER = 0.1  # of the run, that must hold before something can be said to change
 _FOLLOWED = 2.0  # rad between samples
 _CRUDE = 0.02  # a residual, as a share, that is more likely a matter of steps than of mechanics
@@ -194,7 +193,9 @@ def _looked_at(
 
 def _decides(case: Case, power: Power) -> bool:
     """Tell whether most mistakes that matter would have been seen, or, if none matters, the law itself."""
-    return power.decides if power.shown or power.blind else case.series[ACCELERATION].room <= _TELLS
+    if not any(one.tells for one in case.series.values()):
+        return False
+    return power.decides if power.shown or power.blind else case.series[ACCELERATION].tells
 
 
 def _apart(ours: OwnRun) -> str:
@@ -273,7 +274,7 @@ def _figure(series: Series) -> CardFigure:
     note = series.note
     if room > 2 * series.asked:
         note += "; noise and spacing of the data leave that much open"
-    if holds and series.room > _TELLS:
+    if holds and not series.tells:
         return CardFigure(series.name, share, "", allowed, None, f"{note}: too much to tell")
     return CardFigure(series.name, share, "", allowed, holds, note)
 
@@ -287,7 +288,7 @@ def _first_failure(case: Case) -> float | None:
 
 def _remark(case: Case, likely: tuple[Mistake, ...], nearest: tuple[Mistake, ...]) -> str:
     if not case.failing:
-        coarse = [one.name for one in case.series.values() if one.room > _TELLS]
+        coarse = [one.name for one in case.series.values() if not one.tells]
         return f"The data are too few or too noisy to tell: {', '.join(coarse)}." if coarse else ""
     if likely:
         return ""
