@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,40 +18,57 @@ from .contact_state import ContactState, floats
 from .laws import CONTACT, Numbers, SlippingLaw
 from .tracing import python_law
 
-# How many times as fast as slip has grown, r, its direction must settle: with the first two terms, in 1/r and 1/r², of
-# how far it lags behind. The third is 6/r³ of the angle by which it has turned, and must be this small. Where it is
-# not, `SlippingLaw` follows the direction; a method has to take steps as short as that takes to settle.
+# How many times as fast as slip has grown, r, its direction must settle: with the terms in 1/r to 1/r⁴ of how far it
+# lags behind. Where slip grows from nothing the third is 6/r³ of the angle by which it has turned. It is known but for
+# the share of the time in which the motion changes that has passed, and what is left out must be this small, rad: a
+# method whose steps are as short as the direction takes to settle leaves it trembling by more. Where it is larger,
+# `SlippingLaw` follows the direction.
 SETTLES_FAST = 30.0
-_LEFT_OUT = 3e-13
+_LEFT_OUT = 1e-11
+# How many times its direction must settle in the time in which the motion changes to be followed by this law before a
+# method of series goes on: a step of this one takes as long as some sixty of its, of seven such times each.
+_IN_SERIES = 2e5
 _TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
 _LASTS = 50.0  # times the step over which its turning is seen: about how long it holds
-GROWN = ("settled", "lags", "turns")  # ends at which slip is to be followed with its direction
+SEEN = 1e-4  # of the time in which the motion changes: over it one sees how the direction turns
+GROWN = ("settled", "lags", "turns", "series")  # ends at which slip is to be followed with its direction
 _NEAR = 0.98  # cosine of the angle by which the direction may turn until it is looked for near another
+
+
+class _Way(NamedTuple):
+    """How slip goes that is slow."""
+
+    hat: Vector
+    settling: Scalar  # how fast its direction settles, times |s|, m/s²
+    left_out: Scalar  # of its direction, about, rad
 
 
 class CreepingLaw(SlippingLaw):
     """Slipping along the direction that friction keeps: the state is (p, q, Ω, |s|).
 
     It ends where |s| falls back to nothing, "held", where slip has grown so fast that its direction lags, "settled" and
-    "lags", where the body itself turns almost as fast as that settles, "turns", or where it has turned away from the
-    one near which it is looked for, "turned", to be followed from there.
+    "lags", where the body itself turns almost as fast as that settles, "turns", where series take over, "series", or
+    where it has turned away from the one near which it is looked for, "turned", to be followed from there.
 
     Parameters
     ----------
     weightless, turning
         As of `SlippingLaw`.
     step : float
-        A time in which the body hardly moves, s, over which the turning of the direction is seen.
+        A time in which the body hardly moves, s, over which the turning of the direction is seen: `SEEN` of the time in
+        which the motion changes.
     since : float
         When slip began, s.
     near : tuple of float
         A unit vector: near it is the direction that slip keeps.
+    in_series : float
+        How many times its direction settles, at the least, in the time in which the motion changes.
     """
 
     variables = (*CONTACT, "speed")
     brief = True
     handed_on = (*GROWN, "turned")
-    ways: dict[Any, tuple[Vector, Scalar, Scalar]] | None = None  # worked out while it is traced
+    ways: dict[Any, _Way] | None = None  # worked out while it is traced
 
     def __init__(
         self,
@@ -60,9 +77,10 @@ class CreepingLaw(SlippingLaw):
         step: float = 0.0,
         since: float = 0.0,
         near: tuple[float, float, float] = (1.0, 0.0, 0.0),
+        in_series: float = 0.0,
     ) -> None:
         super().__init__(weightless, turning)
-        self.step, self.since = step, since
+        self.step, self.since, self.in_series = step, since, in_series
         self.near_x, self.near_y, self.near_z = near
 
     @property
@@ -78,6 +96,11 @@ class CreepingLaw(SlippingLaw):
     def turned(self, direction: Vector) -> CreepingLaw:
         """Return the same law with another direction near which slip keeps one."""
         return CreepingLaw(self.weightless, self.turning, self.step, self.since, floats(direction))
+
+    def before_series(self) -> CreepingLaw:
+        """Return the same law, handed on where series follow its direction with less work."""
+        near = self.near_x, self.near_y, self.near_z
+        return CreepingLaw(self.weightless, self.turning, self.step, self.since, near, _IN_SERIES)
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
         """Tell that no direction has to settle."""
@@ -100,8 +123,8 @@ class CreepingLaw(SlippingLaw):
         free.ways = {}
         return free
 
-    def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Scalar]:
-        """Return ŝ, lagging behind the direction that slip keeps, how fast that settles, times |s|, and turns."""
+    def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> _Way:
+        """Return ŝ, lagging behind the direction that slip keeps."""
         if self.ways is None:
             return self._found_way(system, time, state)
         key = id(time), *map(id, state)
@@ -109,22 +132,34 @@ class CreepingLaw(SlippingLaw):
             self.ways[key] = self._found_way(system, time, state)
         return self.ways[key]
 
-    def _found_way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Scalar]:
-        first, settling = self._lagging(system, time, state)
+    def _found_way(self, system: RollingSystem, time: Scalar, state: Numbers) -> _Way:
+        """Return it to the fourth order of u, how long the direction takes to settle.
+
+        Of a direction at an angle β that settles at β₀, β̇ = (β₀ − β)/u, it is β = β₀ − uβ̇₀ + u(uβ̇₀)˙ − u(u(uβ̇₀)˙)˙ + …,
+        and u grows as a power of the time since slip began.
+        """
+        first, settling, _ = self._lagging(system, time, state)
         now = self._now(system, time, state, first)
         across = now.contact.normal.cross(first)
-        before, after = (self._lagging(system, *beside)[0] for beside in self._beside(system, time, state, first))
-        turning = (after - before).dot(across) / (2 * self.step)
-        hat = first + across * ((now.slip_rate.dot(across) - state[10] * turning) / settling)
-        return hat / hat.norm(), settling, turning
+        beside = self._beside(system, time, state, first)
+        (before, slower, kept), (after, faster, kept_after) = (self._lagging(system, *there) for there in beside)
+        turning, kept_turning = ((b - a).dot(across) / (2 * self.step) for a, b in ((before, after), (kept, kept_after)))
+        u, share = state[10] / settling, state[10] / (settling * (time - self.since))
+        grows = (beside[1][1][10] / faster - beside[0][1][10] / slower) / (2 * self.step)
+        third = kept_turning * grows * (2 * grows - share) * (1 - 3 * grows + 2 * share)
+        third = third + 3 * grows * (kept_turning * (1 - grows) - turning)
+        hat = first + across * ((now.slip_rate.dot(across) - state[10] * turning) / settling - u * third)
+        passed = (time - self.since) * SEEN / self.step
+        left_out = 1.2 * u * kept_turning * (grows**2 + share**2) * (passed + 20 * share**2)
+        return _Way(hat / hat.norm(), settling, left_out)
 
-    def _lagging(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar]:
-        """Return the same but for the square of how far ŝ lags behind."""
-        hat, across, settling = self._settled(system, time, state)
-        before, after = (self._settled(system, *beside)[0] for beside in self._beside(system, time, state, hat))
+    def _lagging(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Vector]:
+        """Return ŝ but for the square of how far it lags behind, how fast it settles, times |s|, and where."""
+        kept, across, settling = self._settled(system, time, state)
+        before, after = (self._settled(system, *beside)[0] for beside in self._beside(system, time, state, kept))
         turning = (after - before).dot(across) / (2 * self.step)
-        hat = hat - across * (state[10] * turning / settling)
-        return hat / hat.norm(), settling
+        hat = kept - across * (state[10] * turning / settling)
+        return hat / hat.norm(), settling, kept
 
     def _beside(
         self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector
@@ -152,26 +187,26 @@ class CreepingLaw(SlippingLaw):
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇ and the rate of |s|."""
-        return self._rates(system, time, state, self._way(system, time, state)[0])
+        return self._rates(system, time, state, self._way(system, time, state).hat)
 
     def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
         """Return R of slipping along the direction that friction keeps."""
-        return self._now(system, time, state, self._way(system, time, state)[0]).reaction
+        return self._now(system, time, state, self._way(system, time, state).hat).reaction
 
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> dict[str, Scalar]:
         """Return the normal force, its effect on the gap, the speed of slip, how its direction lags, and the bounds."""
-        hat, settling, turning = self._way(system, time, state)
+        hat, settling, left_out = self._way(system, time, state)
         now, Omega = self._now(system, time, state, hat), self.split(state)[2]
-        speed, since = state[10], time - self.since
-        ratio = speed / (settling * since)  # 1/r
+        speed = state[10]
         return {
             **self._pressing(system, now, event_parameters),
             "held": speed,
-            "settled": settling * since - SETTLES_FAST * speed,
-            "lags": _LEFT_OUT**2 - (6 * turning * since * ratio**3) ** 2,
+            "settled": settling * (time - self.since) - SETTLES_FAST * speed,
+            "lags": _LEFT_OUT**2 - left_out**2,
             "turns": settling**2 - (_TURNS * speed) ** 2 * Omega.dot(Omega),
+            "series": settling * self.step / SEEN - self.in_series * speed,
             "turned": hat.dot(Vector(self.near_x, self.near_y, self.near_z)) - _NEAR,
             **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
         }
@@ -194,13 +229,13 @@ class CreepingLaw(SlippingLaw):
 
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ŝ."""
-        return [*self._way(system, time, state)[0]]
+        return [*self._way(system, time, state).hat]
 
     def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
         plain = isinstance(time, float) and isinstance(state[10], float)
-        return (self.direction(system, time, state) if plain else self._way(system, time, state)[0]) * state[10]
+        return (self.direction(system, time, state) if plain else self._way(system, time, state).hat) * state[10]
 
     def _recorded(self, system: RollingSystem, time: Any, states: Any) -> Slipping:
         columns = list(states.T)
         columns[3:7] = (states[:, 3:7] / np.linalg.norm(states[:, 3:7], axis=1, keepdims=True)).T
-        return self._now(system, time, columns, self._way(system, time, columns)[0])
+        return self._now(system, time, columns, self._way(system, time, columns).hat)

@@ -475,7 +475,8 @@ class _Company:
     def _briefly(self, member: Member) -> bool:
         """Follow a member by itself through what is too short to be compiled."""
         stop = None
-        for piece in runge_kutta.integrate(member.system, member.now, member.left, runge_kutta.FINEST):
+        now = taylor.before_series(member.now)
+        for piece in runge_kutta.integrate(member.system, now, member.left, runge_kutta.FINEST):
             if piece.times.size:
                 member.samples.append(member.now.law.record(member.system, piece.times, piece.states))
             stop, member.reached = piece.stop, member.reached + piece.times.size

@@ -378,7 +378,7 @@ def _scale(y0: Array, arm: float, speed: float, share: float) -> Array:
     What begins is small, not its rate's rounding: that is a share of the body's size, and of all accelerations at hand.
     """
     place, turning = max(_size(y0[:3]), arm), max(_size(y0[7:10]), 0.1 * speed / arm)
-    rest = max(1e-3 * _size(y0[10:]), 1e-4 * speed)
+    rest = max(1e-3 * _size(y0[10:]), 0.1 * share * speed)
     least = [*[share * place] * 3, *[1.0] * 4, *[share * turning] * 3, *[rest] * y0.size]
     return np.maximum(np.abs(y0), least[: y0.size])
 

@@ -16,14 +16,13 @@ from ..mechanics.scalars import as_float
 from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
 from .contact_state import WEIGHTLESS, ContactState, floats
-from .creeping import SETTLES_FAST, CreepingLaw
+from .creeping import SEEN, SETTLES_FAST, CreepingLaw
 from .laws import Held, Law, RestingLaw, RollingLaw, SlippingLaw
 from .samples import RESTING
 from .tracing import python_law
 
 _FIRST = 1e-6  # share of the time in which the motion changes that the first moment of slip takes
 _ROLLED = 10 * _FIRST**2  # share of the forces at hand that rolling in that moment takes off N, where it is none
-_SEEN = 1e-4  # the same, over which one sees how its direction turns
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     speed = moment * ((0.0 if begun is None else begun.rate) + 4 * halfway.rate + grown.rate) / 6
     hat = grown.direction
     slipping = _pushed(system, then, hat * speed, law)
-    creeping = partial(CreepingLaw, step=_SEEN / _FIRST * moment, since=time, near=floats(hat))
+    creeping = partial(CreepingLaw, step=SEEN / _FIRST * moment, since=time, near=floats(hat))
     held = "held" if law.code == RESTING else "free"
     if grown.settling * moment > SETTLES_FAST * speed and creeping(turning=held).settles(system, slipping):
         return Onset(slipping, creeping, hat, ())

@@ -96,7 +96,7 @@ def integrate(
 ) -> Iterator[Segment]:
     """Follow one law to its first stop."""
     if now.law.brief:
-        yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+        yield from runge_kutta.integrate(system, before_series(now), times, runge_kutta.FINEST, progress)
         return
     shared = Shared() if shared is None else shared
     goes_on: PhaseStart | None = now
@@ -119,6 +119,11 @@ def integrate(
                 if not _ends_singular(system, now, run):
                     raise
                 yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+
+
+def before_series(now: PhaseStart) -> PhaseStart:
+    """Return a brief law as it is followed where series go on."""
+    return replace(now, law=now.law.before_series())
 
 
 def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing) -> PhaseStart | None:
@@ -232,7 +237,7 @@ def dense(
 ) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step."""
     if now.law.brief:
-        return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
+        return runge_kutta.dense(system, before_series(now), end, runge_kutta.FINEST, most)
     shared = Shared() if shared is None else shared
     legs: list[Leg | TooMany] = []
     ends: list[float] = []
@@ -380,6 +385,8 @@ class _Run:
             if self.kept is not None:
                 given |= {"write_tc": True, "callback": self.kept.take}
             outcome, _, _, steps, *_ = self.integrator.propagate_until(until, **given)
+            if (missed := self._missed(outcome)) is not None:
+                return missed
             if not self._is_cut(outcome, steps):
                 return _event(self, outcome)
 
@@ -394,6 +401,8 @@ class _Run:
             found = found.reshape(-1, self.integrator.state.size)[bool(done) :]
             parts.append(found)
             done += len(found)
+            if (missed := self._missed(outcome)) is not None:
+                return np.vstack(parts), missed
             if not self._is_cut(outcome, steps):
                 return np.vstack(parts), _event(self, outcome)
             while done < since.size and since[done] <= self.integrator.time:  # a rounding before a step's end
@@ -418,6 +427,26 @@ class _Run:
         if longest > GROWN * self.lasted:
             self.lasted = longest = math.inf
         return {"max_steps": most if longest == math.inf else min(most, _YOUNG), "max_delta_t": longest}
+
+    def _missed(self, outcome: Any) -> int | None:
+        """Return the end of slip or turning that was passed over, from where on its steps get shorter without end.
+
+        Zeros are looked for in the series of one step, which differs at its end by a rounding from that of the next: a
+        zero there may be in neither.
+        """
+        import heyoka
+
+        if outcome != heyoka.taylor_outcome.step_limit:
+            return None
+        law, time = self.now.law, self.time
+        (state,) = self.to_law(np.array([time]), self.integrator.state[None].copy()).tolist()
+        for name in law.ends:
+            v, rate = (of(self.system, time, state, name) for of in (law.shrinking, law.shrinking_rate))
+            if v.dot(rate) < 0:
+                found = law.event_functions(self.system, time, state, self.now.event_parameters)
+                if found[f"near {name}"] < 0:
+                    return self.lowered.event_functions.index(f"near {name}")
+        return None
 
     def _is_cut(self, outcome: Any, steps: int) -> bool:
         """Tell whether there is more to do, after so many steps that somebody may have lost patience meanwhile."""

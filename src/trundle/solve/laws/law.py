@@ -80,6 +80,10 @@ class Law:
         """Return a copy of which a tape may replace the numbers."""
         return copy(self)
 
+    def before_series(self) -> Law:
+        """Return what a method of series follows in place of a brief law, in steps of another method."""
+        return self
+
     @property
     def ends(self) -> tuple[str, ...]:
         """Which of its events come where something shrinks to nothing."""
