@@ -10,6 +10,7 @@ from tests.precise import directions, numbers, precisely, vectors
 
 from trundle.errors import InvalidValueError, UnknownNameError
 from trundle.mechanics.algebra import Vector
+from trundle.mechanics.bodies import Body
 from trundle.mechanics.surfaces import (
     Bowl,
     Cone,
@@ -24,7 +25,7 @@ from trundle.mechanics.surfaces import (
     Surface,
     TorusTrack,
 )
-from trundle.mechanics.system import Support
+from trundle.mechanics.system import RollingSystem, Support
 
 
 class TestPlane(SurfaceContract):
@@ -284,3 +285,20 @@ class TestHeightOfOnesOwn(SurfaceContract):
 
     def points(self) -> list[Vector]:
         return [Vector(x, y, x * y) for x, y in [*on_disc("saddle", 1.0), (mp(0), mp(0))]]
+
+
+@pytest.mark.parametrize("x", [-3.0, -0.3, 0.1, 0.4, 7.0])
+@pytest.mark.parametrize("y", [-2.0, -0.2, 0.05, 0.6, 3.0])
+def test_a_table_of_heights_ends_on_all_sides_and_beyond_its_corners(x: float, y: float) -> None:
+    """Beyond two edges at once a product of what is left both ways is positive: a start was taken 10 000 km below."""
+    heights = HeightField.through([-0.3, 0.0, 0.2, 0.4], [-0.2, 0.1, 0.3, 0.6], [[0.1, 0.0, 0.2, 0.1]] * 4)
+    left = heights.domain_margin(Vector(x, y, 0.0))
+    outside = not (-0.3 <= x <= 0.4 and -0.2 <= y <= 0.6)
+    inside = -0.3 < x < 0.4 and -0.2 < y < 0.6
+    assert left < 0 if outside else left > 0 if inside else abs(left) < 1e-15
+    ball = RollingSystem(Body.solid_sphere(0.01, 0.1), Support(heights))
+    if inside:
+        ball.place((x, y))
+    else:
+        with pytest.raises(InvalidValueError, match="end of the table"):
+            ball.place((x, y))

@@ -8,7 +8,7 @@ from typing import Any
 from ...errors import InvalidValueError
 from .. import checks
 from ..algebra import Vector
-from ..scalars import Scalar
+from ..scalars import Scalar, namespace
 from .over_plane import Bends, OverPlane, Slopes, around_axis
 from .splines import Spline, ascending, lengths
 
@@ -164,9 +164,12 @@ class HeightTable(OverPlane):
         return self.grid((x, y), (1, 0)), self.grid((x, y), (0, 1))
 
     def domain_margin(self, p: Vector) -> Scalar:
-        """Return what falls through 0 at the edges of the grid: the product of the shares left on either side."""
-        room = 1.0
-        for value, axis in zip((p.x, p.y), self.grid.axes, strict=True):
-            first, last = axis[0], axis[-1]
-            room = room * (value - first) * (last - value) / (last - first) ** 2
-        return room
+        """Return what falls through 0 at the edges of the grid: a + b − √(a² + b²) of what is left both ways, a and b.
+
+        It is positive where both are; a product would be beyond a corner, too.
+        """
+        a, b = (
+            (value - axis[0]) * (axis[-1] - value) / (axis[-1] - axis[0]) ** 2
+            for value, axis in zip((p.x, p.y), self.grid.axes, strict=True)
+        )
+        return a + b - namespace(a, b).sqrt(a * a + b * b)
