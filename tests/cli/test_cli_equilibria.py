@@ -76,3 +76,17 @@ def test_what_it_refuses(here: Command, words: list[str], said: str) -> None:
     assert said in done.err
     assert done.err.count("\n") == 1
     assert done.files == {"turning.toml"}
+
+
+def test_where_nothing_presses_the_body_on_only_the_places_are_printed(trundle: Command) -> None:
+    """A weight that its own potential carries beside an upright wall: a first step was tried beyond all floats."""
+    Path("carried.toml").write_text("""
+loads = [{ kind = "potential", formula = "10*z**2" }]
+body = { kind = "solid-sphere", radius = 0.05, mass = 1.7 }
+support = { kind = "cylinder", radius = 0.28, friction = 0.5 }
+start = { position = [0.0, 0.004] }
+run = { duration = 0.1, every = 0.01 }
+""")
+    done = trundle("equilibria", "carried.toml")
+    assert (done.status, done.err) == (0, "")
+    assert "contact force N = 0 N, f = 0 N" in done.out

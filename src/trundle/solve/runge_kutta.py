@@ -275,7 +275,8 @@ def _paths(
     if t < end:
         if law.lasts < end - t:
             given["first_step"] = law.lasts
-        stepper = DOP853(rates, t, y, end, max_step=longest, **given)
+        with np.errstate(over="ignore", invalid="ignore"):  # of a first step that is tried
+            stepper = DOP853(rates, t, y, end, max_step=longest, **given)
         compiles = traced.compiled is not None and available()
         to_come = _StepsToCome(law, traced, begin, stepper, taken)
         yield from _one_by_one(stepper, to_come.worth_compiling if compiles else lambda: False)

@@ -209,17 +209,18 @@ def _half(
     size = contact_at(system, time, p, q).offset.norm() + p.norm()
     energy = rest.torque_scale(system, time, p, q)
     scales = np.array([size, size, size, size, 1.0, max(energy, 1e-300)])
-    done = solve_ivp(
-        rates,
-        (0.0, sign * most[1]),
-        [*p, 0.0, 0.0, 0.0],
-        "DOP853",
-        rtol=TOLERANCE,
-        atol=TOLERANCE * scales,
-        max_step=math.pi / 6,
-        dense_output=True,
-        events=ends,
-    )
+    with np.errstate(over="ignore", invalid="ignore"):  # where nothing acts, any work is beyond measure
+        done = solve_ivp(
+            rates,
+            (0.0, sign * most[1]),
+            [*p, 0.0, 0.0, 0.0],
+            "DOP853",
+            rtol=TOLERANCE,
+            atol=TOLERANCE * scales,
+            max_step=math.pi / 6,
+            dense_output=True,
+            events=ends,
+        )
     if not done.success and done.t.size < 2:
         raise SolverError(f"the body cannot be rolled along the support from where it starts: {done.message}")
     return done  # it also ends where no step is short enough: at a crease, or the end of a formula

@@ -62,7 +62,7 @@ def facts(one: Equilibrium, count: int) -> dict[str, str]:
     return {
         "at": where(one),
         "energy": energy,
-        "contact force": f"N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N",
+        "contact force": f"N = {one.normal_force + 0.0:.6g} N, f = {one.friction_force + 0.0:.6g} N",
         "friction": _friction(one),
         "a nudge": "\n".join(_nudges(one)),
     }
