@@ -194,6 +194,26 @@ HOLLOWS = {
 }
 
 
+@pytest.mark.parametrize("speed", [-2.1, 1.3])
+@pytest.mark.parametrize("turned", [0.5, 0.7, 0.95])  # rad from row to row
+def test_rows_far_apart_tell_the_start_by_the_first_of_them(turned: float, speed: float) -> None:
+    """A golf ball in its hole: it goes round, and bobs by what it is. Eight rows, all but a turn, began a fit at rest.
+
+    Round at φ̇ it goes down and up as often as √(k/(1 + k)) φ̇ says, by g/(k φ̇²) either way.
+    """
+    rate = speed / 0.03  # of the centre, round the axis
+    t = np.arange(120) * turned / abs(rate)
+    depth = 9.80665 / (0.4 * rate**2) * (1 - np.cos(np.sqrt(0.4 / 1.4) * rate * t))
+    data = seen(t, 1e-4, 5, z=0.03 * np.exp(1j * rate * t))
+    data |= seen(t, 1e-4, 6, z=-depth)
+    start = {"position": [0.0, 0.0], "velocity": [0.9 * speed, 0.0]}
+    first = scenario(body=ball(0.5), support={"kind": "cylinder", "radius": 0.055}, start=start)
+    found = tr.fit(data, first, K, noise="0.1 mm")
+    assert found.answer == "good", str(found)
+    assert off(found, K, 0.4) < 4
+    assert off(found, "start.velocity[0]", speed) < 4
+
+
 @pytest.mark.parametrize("kind", HOLLOWS)
 def test_a_bowl_and_a_pipe_tell_their_radius_by_that_of_the_ball(kind: str) -> None:
     t = np.arange(60) / 30.0
@@ -317,6 +337,12 @@ body = { kind = "solid-sphere", radius = "10 mm", mass = "32.7 g" }
 support = { kind = "cylinder", radius = "20 cm", tilt = "90 deg" }
 start = { position = [0, 0], velocity = [3, 0] }
 run = { duration = 2, every = 0.01 }
+""",
+    "round a hole, some times a second": """
+body = { kind = "sphere", radius = "21.35 mm", mass = "45.9 g", inertia_ratio = 0.4 }
+support = { kind = "cylinder", radius = "54 mm" }
+start = { position = ["0 deg", "0 cm"], velocity = ["-2.17073 m/s", "0 m/s"] }
+run = { duration = 2.73308, every = 0.0144162 }
 """,
     "by another method": """
 body = { kind = "eccentric-sphere", radius = "10 cm", mass = "640 g", moments = [0.002, 0.0032, 0.0048] }

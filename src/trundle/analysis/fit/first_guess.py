@@ -17,13 +17,25 @@ from .problem import Problem
 from .unknowns import OUTSIDE, START, camera_with, of_run
 
 _DEGREE = 3
-_MOST = 200  # rows for the polynomial at the start
+_FEWEST, _MOST = 8, 200  # rows for the polynomial at the start
+_BENDS = 5.0  # times the noise: what a polynomial through the fewest rows is off by where they are too far apart for it
 _ROUNDS = 12
 _SETTLED = 1e-10
 
 
 def first_guess(problem: Problem) -> Array:
-    """Return the first values: what the scenario has, with starts as the first rows show them."""
+    """Return the first values: what the scenario has, with starts as the first rows show them where that is nearer."""
+    given, shown = problem.start, _as_shown(problem)
+    if (given == shown).all():
+        return given
+    try:
+        sums = [float(residual @ residual) for residual in map(problem.residual, (given, shown))]
+    except (TrundleError, ArithmeticError, ValueError):  # from one of them there is no motion: as the rows show it
+        return shown
+    return given if sums[0] < sums[1] else shown
+
+
+def _as_shown(problem: Problem) -> Array:
     values = problem.start
     for i, (model, noise) in enumerate(zip(problem.models, problem.noises, strict=True)):
         mine = of_run(problem.unknowns, i)
@@ -53,11 +65,16 @@ def _at_start(seen: Observations, sigma: Array) -> dict[str, tuple[float, float]
         good = np.flatnonzero(np.isfinite(column))[:_MOST]
         t, x = seen.time[good] - seen.time[0], column[good]
         best = (float(x[0]), float((x[-1] - x[0]) / (t[-1] - t[0])) if x.size > 1 else 0.0)
-        count = min(8, x.size)
+        count = min(_FEWEST, x.size)
         while count <= x.size and count > _DEGREE + 1:
             fit = np.polynomial.Polynomial.fit(t[:count], x[:count], _DEGREE)
             left = x[:count] - fit(t[:count])
-            if count > 8 and np.sqrt((left**2).sum() / (count - _DEGREE - 1)) > 2 * noise:
+            off = np.sqrt((left**2).sum() / (count - _DEGREE - 1))
+            if count <= _FEWEST and off > _BENDS * noise:
+                through = np.polynomial.Polynomial.fit(t[: _DEGREE + 1], x[: _DEGREE + 1], _DEGREE)
+                best = float(x[0]), float(through.deriv()(0.0))
+                break
+            if count > _FEWEST and off > 2 * noise:
                 break
             best = float(fit(0.0)), float(fit.deriv()(0.0))
             if count == x.size:
