@@ -19,12 +19,16 @@ from .unknowns import OUTSIDE, START, camera_with, of_run
 _DEGREE = 3
 _FEWEST, _MOST = 8, 200  # rows for the polynomial at the start
 _BENDS = 5.0  # times the noise: what a polynomial through the fewest rows is off by where they are too far apart for it
+_NEARER = 0.1  # of the sum of squares
 _ROUNDS = 12
 _SETTLED = 1e-10
 
 
 def first_guess(problem: Problem) -> Array:
-    """Return the first values: what the scenario has, with starts as the first rows show them where that is nearer."""
+    """Return the first values: what the scenario has, with starts as the first rows show them unless its own do better.
+
+    Where neither is near, one of the two is by chance.
+    """
     given, shown = problem.start, _as_shown(problem)
     if (given == shown).all():
         return given
@@ -32,7 +36,7 @@ def first_guess(problem: Problem) -> Array:
         sums = [float(residual @ residual) for residual in map(problem.residual, (given, shown))]
     except (TrundleError, ArithmeticError, ValueError):  # from one of them there is no motion: as the rows show it
         return shown
-    return given if sums[0] < sums[1] else shown
+    return given if sums[0] < _NEARER * sums[1] else shown
 
 
 def _as_shown(problem: Problem) -> Array:
