@@ -79,7 +79,7 @@ def _strip(ax: Axes, series: Series, clock: Unit, first: float | None) -> None:
     ax.yaxis.set_minor_formatter(NullFormatter())
     ax.minorticks_off()
     ax.set_title(series.name, loc="left", fontsize=8.8, fontweight="normal", pad=2.5)
-    within = "within its bound" if series.tells else "within its bound, which is too wide to tell"
+    within = "within its bound" if series.tells else "bound too wide to tell"
     verdict, colour = ("beyond its bound", VERMILION) if over.any() else (within, GREY)
     ax.set_title(verdict, loc="right", fontsize=8.8, fontweight="normal", color=colour, pad=2.5)
     if first is not None:
