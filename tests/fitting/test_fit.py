@@ -197,7 +197,7 @@ HOLLOWS = {
 @pytest.mark.parametrize("speed", [-2.1, 1.3])
 @pytest.mark.parametrize("turned", [0.5, 0.7, 0.95])  # rad from row to row
 def test_rows_far_apart_tell_the_start_by_the_first_of_them(turned: float, speed: float) -> None:
-    """A golf ball in its hole: it goes round, and bobs by what it is. Eight rows, all but a turn, began a fit at rest.
+    """A golf ball in its hole: it goes round, and bobs by what it is. Eight rows, all but a turn, made it slow.
 
     Round at φ̇ it goes down and up as often as √(k/(1 + k)) φ̇ says, by g/(k φ̇²) either way.
     """

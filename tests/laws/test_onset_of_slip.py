@@ -182,7 +182,7 @@ def test_the_direction_that_friction_keeps_is_the_one_to_which_slip_settles(
 
 
 def test_an_end_of_slip_that_heyoka_passes_over_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It lay at the very end of a step, of one in a thousand slips: from there on steps get shorter without end."""
+    """It lay at the very end of a step: from there on steps get shorter without end."""
     system = tr.RollingSystem(GIVES_WAY["a flat stone"], SHAKEN)
 
     def run() -> tr.Trajectory:

@@ -363,10 +363,15 @@ class _Run:
         """The time reached, s."""
         return self.reference + float(self.integrator.time)
 
+    @property
+    def state_vector(self) -> Array:
+        """The law's numbers at the time reached."""
+        (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
+        return np.asarray(state)
+
     def stop(self, reached: int) -> ZeroCrossing:
         """Return the stop that it has come to."""
-        (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
-        return ZeroCrossing(self.time, self.lowered.event_functions[reached], state)
+        return ZeroCrossing(self.time, self.lowered.event_functions[reached], self.state_vector)
 
     def work(self, steps: int) -> float:
         """Return how much work so many steps are, products of code that is made with care."""
@@ -438,8 +443,7 @@ class _Run:
 
         if outcome != heyoka.taylor_outcome.step_limit:
             return None
-        law, time = self.now.law, self.time
-        (state,) = self.to_law(np.array([time]), self.integrator.state[None].copy()).tolist()
+        law, time, state = self.now.law, self.time, self.state_vector.tolist()
         for name in law.ends:
             v, rate = (of(self.system, time, state, name) for of in (law.shrinking, law.shrinking_rate))
             if v.dot(rate) < 0:
@@ -469,8 +473,8 @@ class _Run:
 
     def _holds(self) -> float:
         """Return for how long the law seems to hold, s: until an event function comes to zero that falls as it fell."""
-        (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
-        before, now = (self._event_functions(*at) for at in ((self.begun, self.now.state_vector), (self.time, state)))
+        there = (self.begun, self.now.state_vector), (self.time, self.state_vector)
+        before, now = (self._event_functions(*at) for at in there)
         return until_one_falls(before, now, self.time - self.begun)
 
     def _event_functions(self, time: float, state: Sequence[float] | Array) -> Array:
@@ -537,7 +541,7 @@ def chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[A
 
 def _ends_singular(system: RollingSystem, now: PhaseStart, run: _Run) -> bool:
     """Tell whether a method that does not get on, or breaks down, has all but come to where its law is singular."""
-    (state,) = run.to_law(np.array([run.time]), run.integrator.state[None].copy())
+    state = run.state_vector
     return not np.isfinite(state).all() or runge_kutta.nearly_singular(system, now, run.time, state)
 
 

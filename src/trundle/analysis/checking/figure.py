@@ -52,7 +52,7 @@ def _says(check: Check) -> str:
     if check.passed:
         return "it rolls without slipping and obeys the law, within the bounds"
     if check.answer == "cannot decide":
-        return "these data cannot decide: most mistakes would look the same in them"
+        return "these data cannot decide: they are too short, too few or too noisy to tell"
     told, lead = (check.likely, "likely: ") if check.likely else (check.nearest, "nearest: ")
     if not told:
         return check.remark.rpartition("\n")[2].partition(": look")[0].partition(": no change")[0]

@@ -79,8 +79,8 @@ class Check(Card, Plottable):
     blind : tuple of str
         Mistakes of the textbook that the data could not show if they had been made.
     decides : bool
-        Whether the data could have shown most of the mistakes of the textbook; where not, nothing that holds means
-        anything.
+        Whether any line could be told, and the data could have shown most of the mistakes of the textbook; where not,
+        nothing that holds means anything.
     remark : str
         What else there is to say.
     apart : str

@@ -192,7 +192,7 @@ def _looked_at(
 
 
 def _decides(case: Case, power: Power) -> bool:
-    """Tell whether most mistakes that matter would have been seen, or, if none matters, the law itself."""
+    """Tell whether a line can be told, and most mistakes that matter would have been seen; if none does, the law."""
     if not any(one.tells for one in case.series.values()):
         return False
     return power.decides if power.shown or power.blind else case.series[ACCELERATION].tells

@@ -74,11 +74,10 @@ def _at_start(seen: Observations, sigma: Array) -> dict[str, tuple[float, float]
             fit = np.polynomial.Polynomial.fit(t[:count], x[:count], _DEGREE)
             left = x[:count] - fit(t[:count])
             off = np.sqrt((left**2).sum() / (count - _DEGREE - 1))
-            if count <= _FEWEST and off > _BENDS * noise:
-                through = np.polynomial.Polynomial.fit(t[: _DEGREE + 1], x[: _DEGREE + 1], _DEGREE)
-                best = float(x[0]), float(through.deriv()(0.0))
-                break
-            if count > _FEWEST and off > 2 * noise:
+            if off > (_BENDS if count <= _FEWEST else 2) * noise:
+                if count <= _FEWEST:
+                    through = np.polynomial.Polynomial.fit(t[: _DEGREE + 1], x[: _DEGREE + 1], _DEGREE)
+                    best = float(x[0]), float(through.deriv()(0.0))
                 break
             best = float(fit(0.0)), float(fit.deriv()(0.0))
             if count == x.size:

@@ -81,7 +81,7 @@ class Law:
         return copy(self)
 
     def before_series(self) -> Law:
-        """Return what a method of series follows in place of a brief law, in steps of another method."""
+        """Return the law as it is followed until a method of series goes on: a brief one may be handed on sooner."""
         return self
 
     @property
