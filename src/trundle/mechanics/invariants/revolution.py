@@ -57,7 +57,8 @@ class _Pace:
 class _Meridian:
     """The linear equation along the meridian, from the latitude of the contact whose centre is nearest to the axis.
 
-    There 1/R is largest and tells each rounding; lengths are counted from there, so that theirs are small.
+    There 1/R is largest and tells each rounding; lengths are counted from there, so that theirs are small. The spin is
+    taken times R there: near the axis, w changes by ℓ/R.
     """
 
     def __init__(self, system: RollingSystem, distance: Any, height: Any, centre: Any, pace: _Pace) -> None:
@@ -67,7 +68,8 @@ class _Meridian:
         k = float(system.body.inertia_ratio)
         self.share, self.rate = k / (1 + k), float(system.support.motion.steady_rate or 0.0)
         first = int(np.argmax(centre <= (1 + 1e-6) * centre.min()))  # of those as near, the first
-        self.least = 0.5 * float(centre[first])  # of the centre from the axis, where the equation is singular
+        self.arm = float(centre[first])  # of the centre from the axis
+        self.least = 0.5 * self.arm  # where it may come to: on the axis, the equation is singular
         self.start = self._on_surface(Vector(float(distance[first]), 0.0, float(height[first])))
         self.out, self.up = distance - self.start[0], height - self.start[1]
         self.size = float(np.hypot(self.out, self.up).max())
@@ -93,13 +95,13 @@ class _Meridian:
 
     def slopes(self, _: float, y: Any) -> list[float]:
         """Return the slopes of R_p, z, the matrix of solutions (by rows) and the solution that starts at zero."""
-        p = self.contact(y)
+        p, arm = self.contact(y), self.arm
         R_p = p.x
         n, S = self.surface.normal(p), self.surface.shape_operator(p)
         along = Vector(n.z, 0.0, -n.x)
         kappa, R = along.dot(S @ along), R_p + self.a * n.x
-        up, down = self.share * R * kappa, (n.x * (1 + self.a * kappa) / R - kappa) / R
-        turned = (self.share * R * self.rate * n.z, kappa * self.rate * R_p)
+        up, down = self.share * R * kappa / arm, (n.x * (1 + self.a * kappa) / R - kappa) / R * arm
+        turned = (self.share * R * self.rate * n.z, kappa * self.rate * R_p * arm)
         return [
             n.z,
             -n.x,
@@ -143,11 +145,12 @@ class _Meridian:
             length = self._length(solutions)
             if length is not None:
                 return self._round(length)
-            rows = _both(solutions, self._placed(solutions, _ends(solutions)))
-            if np.hypot(rows[0] - self.out, rows[1] - self.up).max() <= 1e-6 * self.size:
+            low, high = _ends(solutions)
+            sigma = self._placed(solutions, (low, high))
+            if low < sigma.min() and sigma.max() < high:
                 break
             reach *= 2
-        return rows
+        return _both(solutions, sigma)
 
     def _length(self, solutions: tuple[Any, Any]) -> float | None:
         """Return the length of a meridian that is closed, if the solutions come round to where they begin."""
@@ -271,13 +274,14 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
         return []
     A, B, C, D, *turned = rows[2:]
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
-    columns = [inverse[:, 0] * part for part in carried[:2]] + [inverse[:, 1] * part for part in carried[2:]]
+    columns = [inverse[:, 0] * part for part in carried[:2]]
+    columns += [inverse[:, 1] * part * meridian.arm for part in carried[2:]]
     columns += [-inverse[:, 0] * turned[0], -inverse[:, 1] * turned[1]]
     first = np.array([[A[0], B[0]], [C[0], D[0]]])
     columns = [first @ column for column in columns]
     columns.append(np.outer([turned[0][0], turned[1][0]], np.ones_like(distance)))
     reach = float(distance[0])  # makes both angular momenta, per mass
-    return [(column * np.array([[1.0], [reach]])).T.reshape(*shape, 2) for column in columns]
+    return [(column * np.array([[1.0], [reach / meridian.arm]])).T.reshape(*shape, 2) for column in columns]
 
 
 ROUTH_PAIR = Invariant(
