@@ -106,7 +106,11 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     import xarray
 
     arrays = columns(system, samples)
-    variables = {name: (dims, arrays[name], about) for name, (dims, about) in facts(system).items()}
+    variables = {
+        # xarray would look whether they are of any package of arrays that it knows of, and import it first.
+        name: xarray.Variable(dims, arrays[name], about, fastpath=True)
+        for name, (dims, about) in facts(system).items()
+    }
     return xarray.Dataset(variables, coords=coordinates(samples.time), attrs=attributes)
 
 
