@@ -44,8 +44,9 @@ class KeptSeries:
         if integrator.last_h > 0:
             self.references.append(self.reference)
             self.begins.append(self.reached)
-            self.series.frombytes(integrator.tc.tobytes())
-            self.shape = integrator.tc.shape
+            series = integrator.tc
+            self.series.frombytes(series.tobytes())
+            self.shape = series.shape
         self.reached = float(integrator.time)
         return True
 

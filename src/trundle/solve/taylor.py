@@ -33,16 +33,16 @@ _LEAST_CHUNK = 1000  # instants
 # Steps at most, and in units of `Lowered.cost`, between which progress is told and Ctrl-C is heard
 _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 # A law's first steps in a run are made by code that is compiled in haste: it takes four times as long for a step, and a
-# tenth of a second to compile where what is made with care takes one to three. How long they are, and how its event
-# functions fall, tells how many are to come, and whether better code is worth its compilation: to what is made with
-# care where a kind of system is run three times or more, to loops unrolled in this one run. The steps are counted anew
-# in each run, so that it has the same digits whatever is compiled already. A short law is compiled with care at once.
+# tenth of a second to compile where what is made with care takes half to two. How long they are, and how its event
+# functions fall, tells how many are to come, and whether better code is worth its compilation to two runs: most are
+# made again for their card. The steps are counted anew in each run, so that it has the same digits whatever is compiled
+# already. A short law is compiled with care at once.
 _FIRST_LOOK, _NEXT_LOOK = 100, 25  # steps: to see whether they grow, and whether an event function still falls
 _GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
-_WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
-# Steps to come for each unit of it, and the share of those to come that are to be done first: to unroll a long law
-# takes a minute, and where slip begins steps are a thousand times shorter than they will be.
-_WORTH_UNROLLING, _DONE = 4000.0, 0.01
+_WORTH_CARE = 3000.0, 1.2e6  # steps to come: so many, and so many over `Lowered.cost`
+# Steps to come, so many and so many for the square of it: to unroll a law of 200 takes two to three seconds, a long one a
+# minute. A share of them is to be done first: where slip begins steps are a thousand times shorter than they will be.
+_WORTH_UNROLLING, _DONE = (5e4, 5.0), 0.01
 # Times as short as on the mean: where steps go on getting shorter they seem to be ever more, and come to an end first.
 _SHORTENING = 2.0
 _SHORT_LAW = 100  # by `Lowered.cost`
@@ -178,7 +178,8 @@ class _Effort:
         """
         self.pause = _FIRST_LOOK if growing else _NEXT_LOOK
         coming, most = self.pace * left, _PATIENCE["steps"] * _OF_A_SHORT_STEP / self.products(UNROLLED)
-        careful, worth = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost, _WORTH_UNROLLING * self.cost
+        careful = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost
+        worth = _WORTH_UNROLLING[0] + _WORTH_UNROLLING[1] * self.cost**2
         shortening = self.pace * self.gone > _SHORTENING * self.steps
         if min(coming, most) > worth and self.steps > _DONE * worth and not shortening:
             self.level = UNROLLED
