@@ -215,15 +215,68 @@ def test_patience_reckons_with_what_a_step_of_a_law_costs(monkeypatch: pytest.Mo
     assert 3 * egg < ball <= 5.5e3
 
 
+def spent(course: Any, end: float = 1.0) -> float:
+    """Return when patience is lost with work W(t), of which 1e5 is to spare; infinity where it is not."""
+    patience = Patience(0.0, end, steps=1e15, spare=1e5, name="It")
+    before, times = 0.0, np.linspace(0.0, end, 20_001)[1:]
+    for time, done in zip(times.tolist(), np.broadcast_to(course(times), times.shape).tolist(), strict=True):
+        try:
+            patience.after(done - before, time)
+        except tr.SolverError:
+            return time
+        before = done
+    return math.inf
+
+
+@pytest.mark.parametrize(
+    ("course", "lost"),
+    [
+        (lambda t: np.exp(60 * t), math.log(2e5) / 60),  # 1e26 in all
+        (lambda t: np.exp(60 * t + np.sin(60 * t)), math.log(2e5) / 60),  # by fits and starts
+        (lambda t: 30 * np.expm1(60 * t), math.log(2e5 / 30) / 60),
+        (lambda t: np.exp(24 * t), math.inf),  # 2e10, to which there were 17 doublings to come
+        (lambda t: 1e5 * np.exp(60 * (t - 0.9)), math.inf),  # too late for more than some hundred times as much
+        (lambda t: 1e8 * t, math.inf),
+        (lambda t: 1e9 * t**8, math.inf),
+        (lambda t: 1e12 * np.maximum(t - 0.5, 0.0), math.inf),  # after a time in which nothing happened
+        (lambda t: 1e7 * np.sqrt(t), math.inf),
+        (lambda t: 1e6 * t + 2e6 * (1 + np.tanh(40 * (t - 0.1))), math.inf),  # forty times as fast for a while
+    ],
+)
+def test_patience_is_lost_at_once_where_work_doubles_without_end_and_there_alone(course: Any, lost: float) -> None:
+    found = spent(course)
+    assert found == lost or lost <= found <= lost + math.log(2.5) / 60
+
+
+def test_a_ball_thrown_outwards_over_hill_after_hill_is_given_up_before_a_minute_went_into_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each turn of the table throws it out twelve times as far and fast; what led to an event had not been counted."""
+    done: list[float] = []
+    after = Patience.after
+
+    def counted(patience: Patience, steps: int, time: float, each: float = 1.0) -> None:
+        done.append(steps * each * (patience.name != "The run"))
+        after(patience, steps, time, each)
+
+    monkeypatch.setattr(Patience, "after", counted)
+    hills = tr.HeightField("0.035*sin(16*y)*cos(17*y)")
+    support = tr.Support(hills, motion=tr.Wobble(-16.0, math.pi / 2), friction=0.32, tilt=-0.056)
+    system = tr.RollingSystem(tr.Body.hollow_sphere(0.01, 0.8), support)
+    with pytest.raises(tr.SolverError, match="hardly gets on"):
+        taylor.solve(system, system.place((0.0, 0.21), (-0.2, 0.6)), np.linspace(0.0, 3.0, 31))
+    assert 2e5 < sum(done) < 3e5
+
+
 def test_short_steps_where_slip_begins_are_no_reason_to_compile_anything() -> None:
     # Its hundred first steps led over a tenth of a microsecond, and half a minute went into code for the rest.
     effort = taylor._Effort(cost=400)
     effort.after(100, 1e-7)
     effort.look(left=1.0)
     assert effort.level == taylor.IN_HASTE
-    effort.after(4900, 1e-3)
+    effort.after(6900, 1e-3)
     effort.look(left=1.0)
-    assert effort.level == taylor.WITH_CARE  # five thousand for all of a second
+    assert effort.level == taylor.WITH_CARE  # seven thousand for all of a second
     effort.after(50_000, 1e-3)
     effort.look(left=1.0)
     assert effort.level == taylor.UNROLLED  # as many again for each of the milliseconds to come

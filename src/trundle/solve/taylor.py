@@ -463,11 +463,12 @@ class _Run:
         if goes_on and self.effort.steps >= _FIRST_LOOK:
             growing = self.integrator.last_h * self.effort.pace > _GROWING
             self.effort.look(self.end - now, self._holds, growing=growing)
-        if outcome != heyoka.taylor_outcome.step_limit:
-            return False
-        if self.integrator.last_h == 0:  # the terms of the series are greater than any float
+        limited = outcome == heyoka.taylor_outcome.step_limit
+        if limited and self.integrator.last_h == 0:  # the terms of the series are greater than any float
             steps = int(_PATIENCE["steps"])
         self.patience.after(steps, now, self.effort.products(self.level) / _OF_A_SHORT_STEP)
+        if not limited:
+            return False
         if self.progress is not None:
             self.progress(now)
         return True
