@@ -5,8 +5,8 @@ from __future__ import annotations
 from ..errors import SolverError, TrundleError
 
 _NOWHERE, _DEARER = 1e-10, 3  # steps of so small a share of the run lead nowhere, and count so many times
-# Doublings of the work done, up to twice what is to spare: so many tell how long one takes, no longer in their later half
-# than in their earlier, and with so many more to come the end is out of reach. Even work takes twice as long for each.
+# Doublings of the work done, up to twice what is to spare: so many tell how long one takes, no longer in their later
+# half than in their earlier; with so many more to come the end is out of reach. Even work takes ever longer for one.
 _SEEN, _TO_COME, _NO_LONGER = 8, 20, 1.1
 
 
@@ -14,7 +14,7 @@ class Patience:
     """What refuses a run that would take longer than anyone waits.
 
     A run may take so many steps for all of its time, evenly, and where it hardly gets on, as near a pole of a formula
-    just behind its end, some to spare. Where its work doubles again and again, as that of a body that is thrown outwards
+    just behind its end, some to spare. Where its work doubles again and again, as for a body that is thrown outwards
     over hill after hill, twice those to spare tell that it would come to no end.
 
     Parameters

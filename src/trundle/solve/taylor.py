@@ -40,7 +40,7 @@ _AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
 _FIRST_LOOK, _NEXT_LOOK = 100, 25  # steps: to see whether they grow, and whether an event function still falls
 _GROWING = 1.5  # times as long as the mean of some: then the next will be longer yet
 _WORTH_CARE = 3000.0, 1.2e6  # steps to come: so many, and so many over `Lowered.cost`
-# Steps to come, so many and so many for the square of it: to unroll a law of 200 takes two to three seconds, a long one a
+# Steps to come, so many and so many for the square of it: to unroll a law of 200 takes 2 s or 3 s, a long one a
 # minute. A share of them is to be done first: where slip begins steps are a thousand times shorter than they will be.
 _WORTH_UNROLLING, _DONE = (5e4, 5.0), 0.01
 # Times as short as on the mean: where steps go on getting shorter they seem to be ever more, and come to an end first.
