@@ -403,6 +403,33 @@ def test_the_pair_is_carried_along_a_short_stretch_in_few_steps(monkeypatch: pyt
     assert 5 * short < long
 
 
+@pytest.mark.parametrize("off_axis", [1e-3, 1e-4, 1e-5])
+def test_the_pair_is_carried_as_easily_near_the_axis(off_axis: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    # There the spin changes by ℓ/R, a million times ℓ: its tolerance asked for steps of 1e-14 of the way.
+    pytest.importorskip("heyoka")
+    taken: list[float] = []
+    slopes = _Meridian.slopes
+    monkeypatch.setattr(_Meridian, "slopes", lambda self, s, y: [taken.append(s), slopes(self, s, y)][1])
+    cone = tr.Cone(0.0246)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.0352, 0.0094), tr.Support(cone))
+    place = 0.0352 * math.cos(0.0246) + off_axis, 0.0
+    run = tr.simulate(system, system.place(place, (0.02, 0.1), spin=3.0), off_axis * 40, off_axis, method="taylor")
+    at = run.samples
+    n, R, (x, y) = at.normals(system), np.hypot(*at.position[:, :2].T), at.position[:, :2].T
+    across = (x * at.velocity[:, 1] - y * at.velocity[:, 0]) / R
+    spins = 0.0352 * (n * at.angular_velocity).sum(axis=1)
+    kept = spins - math.hypot(*n[0, :2]) / n[0, 2] * across  # as in a cone hardly wider than the ball
+    assert np.ptp(R) > 0.03 * R.max()
+    assert np.ptp(R * across) <= 1e-11 * np.abs(R * across).max()
+    assert np.ptp(kept) <= 1e-11 * np.abs(kept).max()
+    (figure,) = (figure for figure in drifts(system, at, Method.of("taylor")) if PAIR in figure.name)
+    assert figure.passed
+    assert len(taken) < 20_000  # for a handful of records
+    late = replace(at, angular_velocity=at.angular_velocity * np.linspace(1.0, 1.0 + 1e-8, at.time.size)[:, None])
+    (figure,) = (figure for figure in drifts(system, late, Method.of("taylor")) if PAIR in figure.name)
+    assert not figure.passed
+
+
 # --- drawn ----------------------------------------------------------------------------------------------
 
 SIZE = st.floats(0.5, 2.0)
