@@ -12,6 +12,7 @@ import pytest
 import tomli_w
 
 import trundle as tr
+from trundle import verify
 from trundle.solve import runge_kutta, taylor
 from trundle.solve.dense import Dense
 from trundle.solve.methods import Method
@@ -1170,3 +1171,21 @@ def test_energy_is_balanced_wherever_in_a_panel_a_force_turns_round(flies: bool,
     balance = tr.simulate(ball, start, 1.0, 0.01).card()["energy balance"]
     assert balance.passed, str(balance)
     assert balance.bound < 1e-11
+
+
+@pytest.mark.parametrize("rate", [0.41, -0.41, 0.9])
+@pytest.mark.parametrize("time", [-0.0111119, 0.05, 0.2])
+def test_a_body_without_weight_comes_off_within_rounding_of_what_sets_its_support_going(
+    rate: float, time: float
+) -> None:
+    """Friction without a limit holds it at N = 0 and a rounding less, of the forces that it takes to follow a drum."""
+    body = {"kind": "eccentric-cylinder", "radius": 0.0808, "mass": 0.187, "moment_of_inertia": 0.00057}
+    motion = {"kind": "uneven-spin", "rate": rate, "variation": -0.92, "variation_rate": 14.3}
+    support = {"kind": "cylinder", "radius": 0.2385, "motion": motion}
+    load = {"kind": "magnus", "coefficient": -1.3e-4}
+    start = {"position": [-0.02365, -1.0724], "time": time}
+    times = {"duration": 0.5, "every": 0.01, "method": "taylor"}
+    run = passes(body=body, support=support, loads=[load], gravity=0.0, start=start, run=times)
+    pulled = replace(run.samples, contact_force=run.samples.contact_force - 1e-11 * run.samples.normals(run.system))
+    card = verify.card(run.system, run.start, pulled, Method.of("taylor"))
+    assert not card["normal force"].passed

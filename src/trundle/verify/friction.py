@@ -78,10 +78,7 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
     least, needed, resisted = (math.inf, 0.0), (-1.0, 0.0), (-1.0, 0.0)  # what, and when
     size = 0.0
     for some in (some for part in parts for _, some in part.blocks()):
-        sizes = sizes_of(system, some)  # a support that moves under a body at rest asks for forces that cancel
-        size = max(
-            size, sizes["contact_force"], float(system.body.mass) * sizes["velocity"] * sizes["angular_velocity"]
-        )
+        size = max(size, _forces(system, some))
         touching = some.part((some.phase != FLIGHT) & _directed(system, some))
         if not touching.time.size:
             continue
@@ -99,6 +96,15 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
         yield _holding(system, *needed)
     if resisted[0] >= 0:
         yield _resistance(system, *resisted)
+
+
+def _forces(system: RollingSystem, at: Samples) -> float:
+    """Return the size of the forces in a motion, N, also of those that cancel: what a support that moves asks for."""
+    sizes, support = sizes_of(system, at), at.support(system)
+    p = Vector.of(at.contact)
+    carried = np.broadcast_to(support.material_acceleration(p, support.material_velocity(p)).array(), at.position.shape)
+    moved = max(sizes["velocity"] * sizes["angular_velocity"], largest(carried * (at.phase != FLIGHT)[:, None]))
+    return max(sizes["contact_force"], float(system.body.mass) * moved)
 
 
 def slip_of(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
