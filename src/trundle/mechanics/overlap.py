@@ -8,15 +8,21 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InvalidValueError
 from .algebra import Vector
 from .contact import Contact
-from .jets import Jet, jets
+from .motions import SupportState
 from .surfaces import Surface
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from .system import RollingSystem
 
+    Array = NDArray[np.float64]
+
 _DIRECTIONS = 4096  # in which the body's surface is looked at
-_REFINED = 40  # steps from the deepest of them on
-_TOUCHING = 1e-9  # of the body's size: no depth to speak of
+_SIDES, _ALIKE = 6, 0.9  # from the lowest of them on so many sides, apart by the angle with this cosine,
+_REFINED = 40  # so many steps are made down
+TOUCHING = 1e-9  # of the body's size: no depth to speak of
 
 
 def check_clear(
@@ -45,7 +51,7 @@ def check_clear(
     if deepest is None:
         return
     below, where = deepest
-    if below > _TOUCHING * contact.offset.norm():
+    if below > TOUCHING * contact.offset.norm():
         shown = ", ".join(f"{part:.4g}" for part in where)
         raise InvalidValueError(
             key,
@@ -68,11 +74,13 @@ def fits_anywhere(system: RollingSystem) -> bool:
     [True, False]
     """
     bends, free = system.body.shape.largest_radius, system.support.surface.free_radius
+    if free is not None and free == math.inf:  # the plane of touch is between the two
+        return True
     return bends is not None and free is not None and bool(bends <= free)
 
 
 def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[float, tuple[float, ...]] | None:
-    """Return how far the deepest of a body's sampled points is below the surface, and where.
+    """Return how far the deepest of a body's points is below the surface, and where, in the support's own frame.
 
     Examples
     --------
@@ -85,35 +93,55 @@ def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[fl
     >>> abs(below) < 1e-15, abs(where[2]) < 1e-15
     (True, True)
     """
+    below, where = depths(system, contact.support, contact.centre, orientation)
+    return (float(below[0]), tuple(where[0].tolist())) if below[0] > -math.inf else None
+
+
+def depths(system: RollingSystem, support: SupportState, centre: Vector, orientation: Any) -> tuple[Array, Array]:
+    """Return the same for one or many, (n,) and (n, 3), of which each number is (n, 1); -inf where nothing is over it.
+
+    Examples
+    --------
+    See `trundle.solve.walls`.
+    """
     import numpy as np
 
-    surface = system.support.surface
+    surface, turn = system.support.surface, orientation.matrix()
+
+    def own(nu: Vector) -> Vector:
+        return support.local(centre + turn @ system.body.shape.support_map(nu))
+
     with np.errstate(all="ignore"):
-        own = _body_point(system, contact, orientation, _directions())
-        level = np.broadcast_to(np.asarray(surface.level(own), dtype=float), (_DIRECTIONS,)).copy()
-        over = np.isfinite(level) & _there(surface, own)
-    if not over.any():
-        return None
-    level[~over] = math.inf
-    at = int(np.argmin(level))
-    where = Vector(*(float(np.broadcast_to(part, (_DIRECTIONS,))[at]) for part in own))
-    found = _distance(surface, where)
-    for _ in range(_REFINED):  # towards the place where the body's normal is opposite to the surface's
-        turned = contact.support.rotation @ surface.normal(where)
-        further = _body_point(system, contact, orientation, -(orientation.matrix().transpose @ turned))
-        if not all(map(math.isfinite, further)) or not _there(surface, further):
-            break
-        nearer = _distance(surface, further)
-        if not nearer < found:
-            break
-        where, found = further, nearer
-    return -found, tuple(map(float, where))
+        ways = _directions()
+        looked_at = own(ways)
+        level = np.atleast_2d(np.asarray(surface.level(looked_at), dtype=float))
+        level = np.where(np.isfinite(level) & _there(surface, looked_at), level, math.inf)
+        at = _lowest(level, ways)
+        some = np.isfinite(np.take_along_axis(level, at, axis=1))
+        where = Vector(*(np.take_along_axis(np.broadcast_to(part, level.shape), at, axis=1) for part in looked_at))
+        found = np.where(some, _distance(surface, where), math.inf)
+        for _ in range(_REFINED):  # towards the place where the body's normal is opposite to the surface's
+            further = own(-(turn.transpose @ (support.rotation @ surface.normal(where))))
+            nearer = np.where(_there(surface, further), _distance(surface, further), math.nan)
+            better = nearer < found
+            if not better.any():
+                break
+            where = Vector(*(np.where(better, new, old) for new, old in zip(further, where, strict=True)))
+            found = np.where(better, nearer, found)
+    deepest = np.argmin(found, axis=1)[:, None]
+    places = [np.take_along_axis(part, deepest, axis=1) for part in where]
+    return -np.take_along_axis(found, deepest, axis=1)[:, 0], np.hstack(places)
 
 
-def _body_point(system: RollingSystem, contact: Contact, orientation: Any, nu: Vector) -> Vector:
-    """Return X(ν) in the support's own frame, m."""
-    ours = contact.centre + orientation.matrix() @ system.body.shape.support_map(nu)
-    return contact.support.local(ours)
+def _lowest(level: Array, ways: Vector) -> NDArray[np.int_]:
+    """Return which points are lowest on some sides of a body, each another one: only one of them is the contact."""
+    import numpy as np
+
+    axes, level, found = ways.array(), level.copy(), []
+    for _ in range(_SIDES):
+        found.append(np.argmin(level, axis=1))
+        level[axes[found[-1]] @ axes.T >= _ALIKE] = math.inf
+    return np.stack(found, axis=1)
 
 
 def _there(surface: Surface, p: Vector) -> Any:
@@ -124,14 +152,9 @@ def _there(surface: Surface, p: Vector) -> Any:
     return there if left is None else there & (left > 0)
 
 
-def _distance(surface: Surface, p: Vector) -> float:
+def _distance(surface: Surface, p: Vector) -> Any:
     """Return φ/|∇φ|, to first order the distance from the surface, m."""
-    level = float(surface.level(p))
-    phi = surface.level(Vector(*jets(tuple(p)))) if surface.analytic else None
-    if not isinstance(phi, Jet):  # a table: φ is the height
-        return level * float(surface.normal(p).z)
-    slope = Vector(*phi.gradient).norm()
-    return level / slope if math.isfinite(slope) and slope > 0 else level
+    return -surface.step_onto(p).dot(surface.normal(p))
 
 
 def _directions() -> Vector:

@@ -14,6 +14,7 @@ from . import phases
 from .phases import Follows, Integrate, Segment, cut
 from .samples import Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
+from .walls import UpToWall
 
 _MOST_STEPS = 100_000  # kept, of some two or three kilobytes each
 _MARKS = 10_000  # states on the way through a stretch of more
@@ -78,12 +79,17 @@ class Dense:
         self.keep, self.beside = keep, beside
         self.system, self.start, self.end, self.tolerance = system, start, end, tolerance
         self.bends = kinks_and_jolts(system, start.time, end)
+        self.up_to_wall = UpToWall(self._sampled, system, start.time, end, tolerance)
         self.legs: list[Leg] = []
         self.ends: list[float] = []  # of the legs, s
         self.follows: dict[int, PhaseStart | None] = {}
 
     def __call__(self, times: Array) -> Samples:
         """Return the samples at ascending instants, s, none before the start."""
+        return self.up_to_wall(times)
+
+    def _sampled(self, times: Array) -> Samples:
+        """Return the same, whatever the body runs into."""
         self.passed = 0
         known: Any = {"remember": self._remember, "bends": self.bends}
         return phases.solve(self._through, self.system, self.start, times, self.tolerance, **known)

@@ -10,10 +10,14 @@ from functools import cache, partial
 from importlib import import_module
 from typing import Any
 
+import numpy as np
+
 from ..errors import InvalidValueError, OutOfDomainError, UnknownNameError
+from ..mechanics.overlap import fits_anywhere
 from ..mechanics.system import RollingSystem, State
 from .exact import closed_form
 from .samples import Array, Progress, Samples
+from .walls import UpToWall, looks
 
 METHODS = {"exact": "closed_form", "taylor": "taylor", "runge-kutta": "runge_kutta"}
 CHOICES = ("auto", *METHODS)
@@ -41,12 +45,31 @@ class Method:
 
     def solve(self, system: RollingSystem, start: State, times: Array, progress: Progress | None = None) -> Samples:
         """Return the samples of a run at ascending times, s, none before the start."""
+        if not times.size or fits_anywhere(system):
+            return self._solve(system, start, times, progress)
+        if self.name == "exact":
+            return self._up_to_wall(system, start, float(times[-1]))(times)
+        found = self._solve(system, start, np.union1d(times, looks(start.time, float(times[-1]))), progress)
+        if self._up_to_wall(system, start, float(times[-1])).runs_into(found).any():
+            return self.dense(system, start, float(times[-1]))(times)
+        rows = np.searchsorted(found.time, times[times <= found.time[-1]])
+        last = found.time.size - 1
+        if any(event.final for event in found.events) and last not in rows[-1:]:  # there, too, it is sampled
+            rows = np.append(rows, last)
+        return found.part(rows)
+
+    def _solve(self, system: RollingSystem, start: State, times: Array, progress: Progress | None = None) -> Samples:
+        """Return the samples of a run, whatever the body runs into."""
         return solver(self.name)(system, start, times, self.tolerance, progress)
+
+    def _up_to_wall(self, system: RollingSystem, start: State, end: float) -> UpToWall:
+        """Return a run that ends where the body comes to a second wall."""
+        return UpToWall(partial(self._solve, system, start), system, start.time, end, self.tolerance)
 
     def dense(self, system: RollingSystem, start: State, end: float) -> Callable[[Array], Samples]:
         """Return what gives samples of one and the same run at any ascending instants up to its end, s."""
         if self.name == "exact":
-            return partial(self.solve, system, start)
+            return self._up_to_wall(system, start, end)
         from .dense import Dense
 
         module = import_module(f".{METHODS[self.name]}", __package__)

@@ -39,6 +39,7 @@ ENDS = {
     "edge": "{left}, which its shape does not cover",
     "curved": "came where the support is as hollow as the body is round: 1 + C S is singular",
     "spot": "stopped on the spot while it still spins about the normal, which is not covered",
+    "wall": "touched the support in a second place, which is not covered",
 }
 
 

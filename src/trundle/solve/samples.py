@@ -24,7 +24,7 @@ AT_ONCE = 50_000  # samples that are worked on together, lest what is worked out
 
 
 ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
-ENDS = ("rim", "end", "edge", "curved", "spot")  # kinds of event that end a run
+ENDS = ("rim", "end", "edge", "curved", "spot", "wall")  # kinds of event that end a run
 KINDS = ("slip", "grip", "lift", "land", "settle", "jolt", "stop", "start", *ENDS)
 
 
@@ -44,7 +44,7 @@ class Event(Displayed):
         left it.
         The run ended at ``"rim"``: the contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what
         the body's shape covers; ``"curved"``: where the support is too hollow for the body; ``"spot"``: rolling stopped
-        while the body still spins.
+        while the body still spins; ``"wall"``: another part of the body came to the support.
     text : str
         What happened, for the reader.
     before, after : State, optional

@@ -49,17 +49,17 @@ def same_again(
     system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method, kept: Dense | None
 ) -> Iterator[CardFigure]:
     """Compare samples with the same method run again: then what is checked of that run holds for them."""
-    ours, theirs = at_the_same_times(ours, again)
+    end, (ours, theirs) = float(max(ours.time[-1], again.time[-1])), at_the_same_times(ours, again)
     turned, sizes = turned_in(ours), sizes_of(system, ours)
     sizes |= {"contact": sizes["position"]}
     coarser = method
     if method.name == "taylor" and any(event.kind == "slip" for event in ours.events):
         coarser = replace(method, tolerance=max(method.tolerance, FINEST))  # so the first moments of slip are followed
-    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned, kept)
+    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned, kept, end)
     turned_apart = both.turns * both.bound / both.angle_bound
     said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
     yield both.figure("the method run again", np.maximum(both.share, turned_apart), both.bound, said)
-    told = both.alike & (ours.time < parted(ours, theirs))  # from other events on they may be in any phase
+    told = both.alike & (ours.time < both.parts)  # from other events on they may be in any phase
     other = int(((ours.phase != theirs.phase) & told).sum())
     if ours.events or other or (ours.phase != ours.phase[0]).any():
         yield checked("phase", other, 0, "samples in another phase than the method run again has")
@@ -74,8 +74,9 @@ def finer(system: RollingSystem, start: State, at: Samples, method: Method, kept
     some = some.part(kept.work_until(some.time) <= _WORK_FINER)
     if some.time.size < 2:
         return
-    ours, theirs = at_the_same_times(some, with_more.solve(system, start, some.time))
-    both = Compared(system, start, ours, theirs, method, method, sizes_of(system, ours), turned_in(at), kept)
+    theirs = with_more.solve(system, start, some.time)
+    end, (ours, theirs) = float(max(some.time[-1], theirs.time[-1])), at_the_same_times(some, theirs)
+    both = Compared(system, start, ours, theirs, method, method, sizes_of(system, ours), turned_in(at), kept, end)
     said = f"beside a run of tolerance {with_more.tolerance:g}, at {ours.time.size} instants"
     if kept.work > _WORK_FINER:
         said += f" up to {some.time[-1]:.6g} s"
@@ -116,9 +117,9 @@ def cross_check(
         except OutOfDomainError as error:  # which happens at another instant, or to one of them only
             yield checked(name, np.inf, 0.0, str(error).partition(". ")[0])
             return
-    ours, theirs = at_the_same_times(ours, theirs)
+    end, (ours, theirs) = float(max(ours.time[-1], theirs.time[-1])), at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
-    both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned, kept)
+    both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned, kept, end)
     over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
     alone = "; exact from the place alone" if motion.fixed_axis_rotation(0.0) is not None else ""
@@ -140,6 +141,7 @@ class Compared:
     sizes: dict[str, float]  # against what a difference of each quantity is small or not
     turned: float  # by about how many radians the body turned
     kept: Dense | None = None  # a run by the method that follows changed starts, gone through once
+    end: float = -np.inf  # s, of the longer of the two, of which the shorter may have ended at an event
 
     @property
     def bound(self) -> float:
@@ -157,6 +159,11 @@ class Compared:
     def angle_bound(self) -> float:
         """The angle that the method may be off, rad: rounding, and the error of Ω, add up over the turning."""
         return max(EXACT, 1e-15 * self.turned, 100 * self.method.tolerance * self.turned)
+
+    @cached_property
+    def parts(self) -> float:
+        """When something first happened to one of them alone, s."""
+        return parted(self.ours, self.theirs, self.end)
 
     @cached_property
     def alike(self) -> NDArray[np.bool_]:
@@ -250,7 +257,7 @@ class Compared:
         shifted = [
             event.time for event, by in zip(self.ours.events[:count], self._shifts, strict=True) if by > self.bound
         ]
-        return min([parted(self.ours, self.theirs), *self.ours.time[apart][:1].tolist(), *shifted[:1]])
+        return min([self.parts, *self.ours.time[apart][:1].tolist(), *shifted[:1]])
 
     @cached_property
     def _shifts(self) -> Array:
@@ -322,7 +329,7 @@ class Compared:
 
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
         """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies."""
-        parts = parted(self.ours, self.theirs)
+        parts = self.parts
         plain = max(float(np.max(share, initial=0.0)), float(np.max(self._shifts, initial=0.0)) * bound / self.bound)
         if plain <= bound and parts == np.inf:
             return checked(name, plain, bound, said, unit)
@@ -334,14 +341,14 @@ class Compared:
         allowed = grown.widened(bound, self._steps, magnified)
         told = (self.ours.time <= until) & ((allowed < MOST) | (allowed <= bound))
         until = min([until, *self.ours.time[(self.ours.time <= until) & ~told][:1].tolist()])
+        last = float(self.ours.time[-1])
         later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
         later = np.max([later[: events.size], grown.at(events), self._delayed(events)], axis=0)  # times and states
         allowed_then = grown.widened(bound, self._steps, later)
-        known = (events <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
-        values = np.concatenate(
-            [share[told], self._shifts[known] * bound / self.bound, [np.inf] if parts <= until else []]
-        )
-        bounds = np.concatenate([allowed[told], allowed_then[known], [bound] if parts <= until else []])
+        known = (np.minimum(events, last) <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
+        alone = [np.inf] if min(parts, last) <= until and parts < np.inf else []  # something happened to one of them
+        values = np.concatenate([share[told], self._shifts[known] * bound / self.bound, alone])
+        bounds = np.concatenate([allowed[told], allowed_then[known], [bound] * len(alone)])
         worst = int(np.argmax(values / bounds)) if values.size else 0
         said += (
             f"; a change of the start shows {grown.at(np.array([min(until, self.ours.time[-1])]))[0]:.2g} times larger"

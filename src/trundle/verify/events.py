@@ -19,11 +19,13 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import contact_at, roll
 from ..mechanics.duals import value_of
 from ..mechanics.kinks import Kink
+from ..mechanics.overlap import TOUCHING
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from ..solve.contact_state import ContactState
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from ..solve.transitions import JOLT
+from ..solve.walls import WALL, reach, slack
 from .acting import acting, cross
 from .bounds import A_STEP, SINGULAR, SOLVER, Array, blur_of, largest, sizes_of
 from .card import CardFigure
@@ -339,6 +341,14 @@ class AtEvents:
                 fallen = left**2 - self._left(event, then) ** 2
                 allowed += float(np.sqrt(_CLOSE * fallen if fallen > 0 else -_UNSURE * fallen))
             yield event, "1 + C S singular" if event.kind == "curved" else "at the end", abs(left), allowed
+        elif event.kind == WALL:
+            below = float(reach(self.system, at)[0])
+            yield (
+                event,
+                "another part touches",
+                below if below > TOUCHING / 2 else np.inf,
+                2 * slack(self.bound / SOLVER),
+            )
         elif event.kind == "spot":
             yield (
                 event,

@@ -9,6 +9,7 @@ small, two honest runs may be anywhere, and no comparison says anything.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -210,10 +211,10 @@ def numerical(method: Method) -> Method:
     return method if method.name != "exact" else Method.of("taylor" if available() else "runge-kutta")
 
 
-def parted(ours: Samples, theirs: Samples) -> float:
-    """Return when two runs first meet different events, s; infinite where they do not."""
+def parted(ours: Samples, theirs: Samples, end: float = -math.inf) -> float:
+    """Return when two runs first meet different events, s, before the later of their ends; infinite where never."""
     known = same_events(ours.events, theirs.events)
     rest = [run.events[known].time for run in (ours, theirs) if len(run.events) > known]
-    end = float(max(ours.time[-1], theirs.time[-1]))
+    end = float(max(ours.time[-1], theirs.time[-1], end))
     near = 1e-6 * (end - float(min(ours.time[0], theirs.time[0])))
     return min((time for time in rest if time < end - near), default=float("inf"))

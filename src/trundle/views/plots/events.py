@@ -23,6 +23,7 @@ _FINAL = {
     "end": "reached the end of the surface",
     "curved": "no longer fitted the surface",
     "spot": "had to stop",
+    "wall": "touched in a second place",
 }
 _SAID = {
     "slip": "began to slip",
