@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_DIRECTIONS = 4096  # in which the body's surface is looked at
-_SIDES, _ALIKE = 6, 0.9  # from the lowest of them on so many sides, apart by the angle with this cosine,
+_DIRECTIONS, _FEW = 4096, 512  # in which the surface of one body is looked at, and that of each of many
+_SIDES, _ALIKE = 8, 0.9  # from the lowest of them on so many sides, apart by the angle with this cosine,
 _REFINED = 40  # so many steps are made down
 TOUCHING = 1e-9  # of the body's size: no depth to speak of
 
@@ -112,11 +112,11 @@ def depths(system: RollingSystem, support: SupportState, centre: Vector, orienta
         return support.local(centre + turn @ system.body.shape.support_map(nu))
 
     with np.errstate(all="ignore"):
-        ways = _directions()
+        ways = _directions(_DIRECTIONS if isinstance(centre.x, float) else _FEW)
         looked_at = own(ways)
         level = np.atleast_2d(np.asarray(surface.level(looked_at), dtype=float))
         level = np.where(np.isfinite(level) & _there(surface, looked_at), level, math.inf)
-        at = _lowest(level, ways)
+        at = _lowest(level, ways.array(), system.body.shape.support_map(ways).array())
         some = np.isfinite(np.take_along_axis(level, at, axis=1))
         where = Vector(*(np.take_along_axis(np.broadcast_to(part, level.shape), at, axis=1) for part in looked_at))
         found = np.where(some, _distance(surface, where), math.inf)
@@ -133,14 +133,16 @@ def depths(system: RollingSystem, support: SupportState, centre: Vector, orienta
     return -np.take_along_axis(found, deepest, axis=1)[:, 0], np.hstack(places)
 
 
-def _lowest(level: Array, ways: Vector) -> NDArray[np.int_]:
-    """Return which points are lowest on some sides of a body, each another one: only one of them is the contact."""
+def _lowest(level: Array, normals: Array, places: Array) -> NDArray[np.int_]:
+    """Return which points are lowest, each on another side or at another end of the body: the contact is one."""
     import numpy as np
 
-    axes, level, found = ways.array(), level.copy(), []
+    level, found = level.copy(), []
+    sides = normals, places / np.maximum(np.linalg.norm(places, axis=1, keepdims=True), 1e-300)
     for _ in range(_SIDES):
         found.append(np.argmin(level, axis=1))
-        level[axes[found[-1]] @ axes.T >= _ALIKE] = math.inf
+        alike = [side[found[-1]] @ side.T >= _ALIKE for side in sides]
+        level[alike[0] & alike[1]] = math.inf
     return np.stack(found, axis=1)
 
 
@@ -157,11 +159,11 @@ def _distance(surface: Surface, p: Vector) -> Any:
     return -surface.step_onto(p).dot(surface.normal(p))
 
 
-def _directions() -> Vector:
+def _directions(count: int) -> Vector:
     """Return directions spread evenly over the sphere: Fibonacci's lattice."""
     import numpy as np
 
-    i = np.arange(_DIRECTIONS) + 0.5
-    z, angle = 1.0 - 2.0 * i / _DIRECTIONS, math.pi * (1.0 + math.sqrt(5.0)) * i
+    i = np.arange(count) + 0.5
+    z, angle = 1.0 - 2.0 * i / count, math.pi * (1.0 + math.sqrt(5.0)) * i
     r = np.sqrt(1.0 - z * z)
     return Vector(r * np.cos(angle), r * np.sin(angle), z)

@@ -18,7 +18,7 @@ from .samples import Array, Event, Samples
 WALL = "wall"
 _LOOKS = 256  # at a run, evenly in its time
 _PARTS, _PASSES = 17, 14  # into which the time between two of them is cut, again and again
-_AT_ONCE = 16  # instants, at each of which thousands of points of the body are looked at
+_AT_ONCE = 64  # instants, at each of which hundreds of points of the body are looked at
 _CLOSE = 1e-13  # of a run's time, by which what is found from other looks may be another instant
 _COARSER = 100.0  # times a method's tolerance, by which the contact itself may lie beside the surface
 

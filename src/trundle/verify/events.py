@@ -342,13 +342,10 @@ class AtEvents:
                 allowed += float(np.sqrt(_CLOSE * fallen if fallen > 0 else -_UNSURE * fallen))
             yield event, "1 + C S singular" if event.kind == "curved" else "at the end", abs(left), allowed
         elif event.kind == WALL:
-            below = float(reach(self.system, at)[0])
-            yield (
-                event,
-                "another part touches",
-                below if below > TOUCHING / 2 else np.inf,
-                2 * slack(self.bound / SOLVER),
-            )
+            then, allowed = self._sample(event.time), 2 * slack(self.bound / SOLVER)
+            touches = then is None or float(reach(self.system, then)[0]) > TOUCHING / 2
+            below = float(reach(self.system, at)[0])  # over a rim it may be deeper at once
+            yield event, "another part touches, and not before", below if touches else np.inf, allowed
         elif event.kind == "spot":
             yield (
                 event,

@@ -72,6 +72,11 @@ class TorusTrack(Surface):
         return [f"ring {wording.length(self.ring_radius)}, tube {wording.length(self.tube_radius)}"]
 
     @property
+    def free_radius(self) -> Scalar | None:
+        """Inside, that of the tube, all of which is within it of the ring."""
+        return self.tube_radius if self.side == "inside" else None
+
+    @property
     def sign(self) -> float:
         """+1 where the body is outside the tube, −1 where it is inside."""
         return 1.0 if self.side == "outside" else -1.0
