@@ -265,6 +265,7 @@ orientation = [-0.821432, 0.255377, 0.282854, 0.0]
 }
 
 
+@pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("name", CURVED)
 def test_no_law_is_compiled_for_the_few_steps_to_where_it_ends_the_run(
     name: str, monkeypatch: pytest.MonkeyPatch

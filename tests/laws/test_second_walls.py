@@ -108,10 +108,10 @@ def test_an_ellipsoid_comes_to_the_other_side_of_a_bowl_where_scipy_finds_that_i
     assert run.card().passed, str(run.card())
 
 
-def test_the_card_of_a_run_that_goes_through_a_wall_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_card_of_a_run_that_goes_through_a_wall_fails() -> None:
     system = valley()
     start = system.place((0.05, 0.0))
-    with monkeypatch.context() as blind:
+    with pytest.MonkeyPatch.context() as blind:
         blind.setattr(UpToWall, "runs_into", lambda _, at: np.zeros(at.time.size, dtype=bool))
         run = tr.simulate(system, start, duration=0.15, every=0.01)
     assert run.events == ()

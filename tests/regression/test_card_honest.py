@@ -190,6 +190,7 @@ CURVED = {
 }
 
 
+@pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("kind", CURVED)
 def test_a_run_that_ends_where_the_support_is_as_hollow_as_the_body_is_round(kind: str) -> None:
     run = passes(**CURVED[kind])
@@ -201,6 +202,7 @@ def test_a_run_that_ends_where_the_support_is_as_hollow_as_the_body_is_round(kin
     assert not altered.card().passed
 
 
+@pytest.mark.usefixtures("through_walls")
 def test_a_flight_that_ends_where_no_point_of_the_support_is_nearest() -> None:
     # Between the clock's last two instants 1 + C S changes by 2e-7 there, and no step is shorter than ten of these.
     potential = {"kind": "potential", "formula": "1.48277*3*(z**2 + y**2) + -0.0237738*x**2"}
@@ -314,6 +316,7 @@ NEAR_AN_END = {
 }
 
 
+@pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("kind", NEAR_AN_END)
 def test_what_rounding_does_near_an_end_adds_up(kind: str) -> None:
     tables, end = NEAR_AN_END[kind]
@@ -555,6 +558,7 @@ def test_an_axle_that_only_rounding_turns_passes(kind: str) -> None:
     assert np.abs(run.samples.support_coordinates[:, -1]).max() <= 1e-14
 
 
+@pytest.mark.usefixtures("through_walls")
 def test_the_last_instant_before_a_singular_end_leaves_the_windows_wide() -> None:
     # Where the support is as hollow as the body is round the force is a million times that of all other instants.
     axle = {"kind": "free-axle", "inertia": 0.134335, "bearing_drag": 4.3e-5, "bearing_torque": 0.00215}
@@ -644,6 +648,7 @@ def test_a_second_run_that_breaks_down_fails_the_card_and_raises_nothing(monkeyp
 # --- a body that all but lies flat ---------------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize(("x", "spun"), [(0.0125681, 1.0), (0.0125681, 0.3), (0.0121, -1.0)])
 def test_a_rounding_of_a_lean_of_a_millionth_is_no_fault(x: float, spun: float) -> None:
     # A disc that lands on its rim and rolls for some microseconds until it lies flat: its contact runs round the rim.
@@ -710,6 +715,7 @@ def test_a_spinning_ring_that_touches_the_wall_by_a_rounding_each_half_turn(spin
     np.testing.assert_allclose(fall, 9.80665 / 2 * run.samples.time**2, rtol=0, atol=1e-6)
 
 
+@pytest.mark.usefixtures("through_walls")
 def test_the_contact_of_a_flight_that_ends_where_none_is_nearest() -> None:
     run = passes(
         body={"kind": "ring", "radius": 0.0567743, "mass": 0.0233263},
@@ -838,6 +844,7 @@ def test_a_millionth_of_a_second_between_a_landing_and_a_singular_end_is_followe
     assert ended.time - landed.time < 1e-5
 
 
+@pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("height", [0.03, 0.06, 0.0837479])
 def test_a_flight_to_where_the_track_is_as_hollow_as_the_ring(height: float) -> None:
     # The place that is nearest there is known to a root of a rounding only: it differs from one instant to the next.

@@ -33,7 +33,7 @@ from .bounds import (
 )
 from .card import CardFigure, checked
 from .friction import normal_and_friction, slip_of
-from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
+from .growth import MOST, NEAR_THE_END, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 from .landings import landings_of
 
 _INSTANTS = 200
@@ -345,7 +345,10 @@ class Compared:
         later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
         later = np.max([later[: events.size], grown.at(events), self._delayed(events)], axis=0)  # times and states
         allowed_then = grown.widened(bound, self._steps, later)
-        known = (np.minimum(events, last) <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
+        sooner = NEAR_THE_END * (last - self.start.time)
+        known = (np.minimum(events, max(self.end, last) - sooner) <= until) & (
+            (allowed_then < MOST) | (allowed_then <= bound)
+        )
         alone = [np.inf] if min(parts, last) <= until and parts < np.inf else []  # something happened to one of them
         values = np.concatenate([share[told], self._shifts[known] * bound / self.bound, alone])
         bounds = np.concatenate([allowed[told], allowed_then[known], [bound] * len(alone)])

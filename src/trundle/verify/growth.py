@@ -35,6 +35,7 @@ _MOST_NUDGE = 1e-4
 _FLOOR = 1e-4  # of the largest change: of less, rounding is part
 _INSTANTS = 200
 _INSTANT = 1e-6  # of the time in which the motion changes
+NEAR_THE_END = 1e-6  # of a run, by which what ends it may come later
 
 
 @dataclass(frozen=True)
@@ -216,5 +217,5 @@ def parted(ours: Samples, theirs: Samples, end: float = -math.inf) -> float:
     known = same_events(ours.events, theirs.events)
     rest = [run.events[known].time for run in (ours, theirs) if len(run.events) > known]
     end = float(max(ours.time[-1], theirs.time[-1], end))
-    near = 1e-6 * (end - float(min(ours.time[0], theirs.time[0])))
+    near = NEAR_THE_END * (end - float(min(ours.time[0], theirs.time[0])))
     return min((time for time in rest if time < end - near), default=float("inf"))
