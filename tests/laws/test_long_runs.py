@@ -399,3 +399,17 @@ def test_slip_that_turns_by_right_angles_without_end_is_refused_in_words(speed: 
     """No event happens there, and so nothing counted how often a stretch began."""
     with pytest.raises(tr.SolverError, match="The run hardly gets on at t = "):
         sliding(speed, WITHOUT[1], 4.0, method)
+
+
+def test_each_run_of_many_from_one_instant_has_patience_of_its_own() -> None:
+    """Neighbours are followed over the same time again and again, with what is compiled for all of them."""
+    shared = taylor.Shared()
+    first = shared.patience(0.0, 10.0)
+    first.after(1000, 4.0)
+    assert shared.patience(4.0 - 1e-15, 10.0) is first  # the next stretch, a rounding before
+    assert shared.patience(4.0, 10.0) is first
+    again = shared.patience(0.0, 10.0)
+    assert again is not first
+    assert again.owed == 0
+    first.after(1000, 9.0)
+    assert shared.patience(9.0, 10.0) is again

@@ -311,6 +311,7 @@ def test_when_an_event_comes_has_its_derivative(name: str) -> None:
     assert len(kinds) == len(found.data.kind)
 
 
+@pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("duration", [0.13, 0.15, 0.53])
 @pytest.mark.parametrize("key", ["start.velocity[0]", "start.velocity[1]", "support.friction"])
 def test_when_a_law_grows_singular_has_its_derivative(key: str, duration: float) -> None:
@@ -497,6 +498,7 @@ def test_slip_that_begins_at_each_landing_is_traced_once(monkeypatch: pytest.Mon
     assert len(traced) == len(set(traced))
 
 
+@pytest.mark.usefixtures("through_walls")
 def test_a_law_that_grows_singular_next_to_the_end_of_a_formula_has_its_derivative() -> None:
     """A step back from there leads to where log has no value."""
     tables = {

@@ -51,6 +51,7 @@ _OF_ANY_STEP = 3e4  # products that take as long as what is not the law
 # A minute, and some seconds, in steps of a law as short as those that are compiled with care at once.
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 1e5, "name": "Taylor's method"}
 _OF_A_SHORT_STEP = 5e4  # products
+_BACK = 1e-6  # of the time to come: a stretch of the same run begins a rounding before the last one's end at most
 _STRAIGHT, _YOUNG, GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 LONGEST = 100.0  # s without a new reference of time, at most
 _PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
@@ -198,8 +199,8 @@ class Shared:
     _patience: Patience | None = None
 
     def patience(self, begin: float, end: float) -> Patience:
-        """Return what refuses to go on for too long, over all of the run."""
-        if self._patience is None:
+        """Return what refuses to go on for too long, over all of the run; of another one where the time goes back."""
+        if self._patience is None or self._patience.time - begin > _BACK * (end - begin):
             self._patience, self.end = Patience(begin, end, **_PATIENCE), end
         return self._patience
 
