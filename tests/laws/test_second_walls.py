@@ -145,11 +145,18 @@ def test_on_a_plane_and_on_a_dome_nothing_is_looked_for(shape: str, monkeypatch:
         assert tr.simulate(system, start, duration=0.1, every=0.05).data.time.size == 3
 
 
-def test_a_part_below_the_surface_at_the_start_ends_a_run_there() -> None:
-    """`place` refuses it; a state that is made by hand is not asked."""
+def test_a_part_below_the_surface_at_the_start_is_refused_also_in_a_state_made_by_hand() -> None:
     system = valley()
-    inside = replace(system.place((0.05, 0.0)), position=(0.01, 0.0, 0.01 + math.sqrt(2) * A))
-    run = tr.simulate(system, inside, duration=1.0, every=0.1)
-    assert [event.kind for event in run.events][-1] == "wall"
-    assert run.samples.time[-1] < 0.1
-    assert TOUCHING == 1e-9  # what docs/surfaces.md says
+    inside = replace(system.place((0.05, 0.0)), position=(-0.005, 0.0, -0.005 + math.sqrt(2) * A))
+    with pytest.raises(tr.InvalidValueError, match="must put the body on the support or over it"):
+        tr.simulate(system, inside, duration=1.0, every=0.1)
+
+
+def test_of_a_million_samples_no_more_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[int] = []
+    runs_into = UpToWall.runs_into
+    monkeypatch.setattr(UpToWall, "runs_into", lambda self, at: [seen.append(at.time.size), runs_into(self, at)][1])
+    system = valley()
+    Method.of("taylor").solve(system, system.place((0.05, 0.0)), np.linspace(0.0, 0.1, 20_001))
+    assert seen == [257]  # what docs/surfaces.md says
+    assert TOUCHING == 1e-9  # and this

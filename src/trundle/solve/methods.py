@@ -49,8 +49,10 @@ class Method:
             return self._solve(system, start, times, progress)
         if self.name == "exact":
             return self._up_to_wall(system, start, float(times[-1]))(times)
-        found = self._solve(system, start, np.union1d(times, looks(start.time, float(times[-1]))), progress)
-        if self._up_to_wall(system, start, float(times[-1])).runs_into(found).any():
+        looked_at = looks(start.time, float(times[-1]))
+        found = self._solve(system, start, np.union1d(times, looked_at), progress)
+        seen = found.part(np.isin(found.time, looked_at))  # of a million samples, no more than these
+        if self._up_to_wall(system, start, float(times[-1])).runs_into(seen).any():
             return self.dense(system, start, float(times[-1]))(times)
         rows = np.searchsorted(found.time, times[times <= found.time[-1]])
         last = found.time.size - 1
