@@ -11,7 +11,7 @@ import pytest
 
 import trundle as tr
 from trundle import verify
-from trundle.mechanics.overlap import TOUCHING
+from trundle.mechanics.overlap import TOUCHING, fits_anywhere
 from trundle.mechanics.shapes import Ellipsoid
 from trundle.solve.methods import Method
 from trundle.solve.walls import UpToWall
@@ -160,3 +160,20 @@ def test_of_a_million_samples_no_more_are_looked_at(monkeypatch: pytest.MonkeyPa
     Method.of("taylor").solve(system, system.place((0.05, 0.0)), np.linspace(0.0, 0.1, 20_001))
     assert seen == [257]  # what docs/surfaces.md says
     assert TOUCHING == 1e-9  # and this
+
+
+@pytest.mark.parametrize("radius", [0.03, 0.095, 0.0999])
+def test_a_ball_inside_a_tube_lies_within_it_wherever_it_touches(radius: float) -> None:
+    """No point of it is farther from the ring than the tube is wide; a larger one is looked at."""
+    ring, tube = 0.15, 0.1
+    track = tr.TorusTrack(ring, tube)
+    nu = np.random.default_rng(5).normal(size=(20_000, 3))
+    nu /= np.linalg.norm(nu, axis=1)[:, None]
+    for angle in np.linspace(-math.pi, math.pi, 25):
+        p = track.point(0.3, float(angle))
+        x, y, z = (p.array() + radius * track.normal(p).array() + radius * nu).T
+        assert np.hypot(np.hypot(x, y) - ring, z).max() <= tube * (1 + 1e-12)
+    assert fits_anywhere(tr.RollingSystem(tr.Body.solid_sphere(radius, 1.0), tr.Support(track)))
+    assert not fits_anywhere(tr.RollingSystem(tr.Body.solid_sphere(0.11, 1.0), tr.Support(track)))
+    outside = tr.Support(tr.TorusTrack(ring, tube, "outside"))
+    assert not fits_anywhere(tr.RollingSystem(tr.Body.solid_sphere(radius, 1.0), outside))
