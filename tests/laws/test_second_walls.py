@@ -108,6 +108,19 @@ def test_an_ellipsoid_comes_to_the_other_side_of_a_bowl_where_scipy_finds_that_i
     assert run.card().passed, str(run.card())
 
 
+@pytest.mark.parametrize("duration", [0.087, 0.3, 2.0, 100.0])
+def test_a_wall_just_before_another_end_is_found_however_much_more_is_asked_for(duration: float) -> None:
+    """This disc strikes a bowl, its other end 0.4 ms later; 0.6 ms on, the bowl would be rounder than the disc."""
+    body = tr.Body.disc(0.0118513, thickness=0.0302067, density=1234.96)
+    bowl = tr.EllipsoidalBowl((0.766638, 0.274539, 0.141292))
+    system = tr.RollingSystem(body, tr.Support(bowl, friction=0.069146))
+    start = system.place((0.104954, 0.0123729), velocity=(0.0676024, -0.0997183, 0.125977), height=0.0257207)
+    run = tr.simulate(system, start, duration=duration, every=duration / 100)
+    assert [event.kind for event in run.events] == ["land", "wall"]
+    assert abs(run.events[-1].time - tr.simulate(system, start, 0.087, 0.01).events[-1].time) <= 1e-12
+    assert run.card().passed, str(run.card())
+
+
 def test_the_card_of_a_run_that_goes_through_a_wall_fails() -> None:
     system = valley()
     start = system.place((0.05, 0.0))

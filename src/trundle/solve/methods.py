@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from ..mechanics.system import RollingSystem, State
 from .exact import closed_form
 from .samples import Array, Progress, Samples
 from .walls import UpToWall, looks
+
+if TYPE_CHECKING:
+    from .dense import Dense
 
 METHODS = {"exact": "closed_form", "taylor": "taylor", "runge-kutta": "runge_kutta"}
 CHOICES = ("auto", *METHODS)
@@ -51,11 +54,14 @@ class Method:
             return self._up_to_wall(system, start, float(times[-1]))(times)
         looked_at = looks(start.time, float(times[-1]))
         found = self._solve(system, start, np.union1d(times, looked_at), progress)
-        seen = found.part(np.isin(found.time, looked_at))  # of a million samples, no more than these
-        if self._up_to_wall(system, start, float(times[-1])).runs_into(seen).any():
-            return self.dense(system, start, float(times[-1]))(times)
-        rows = np.searchsorted(found.time, times[times <= found.time[-1]])
         last = found.time.size - 1
+        seen = found.part(np.union1d(np.flatnonzero(np.isin(found.time, looked_at)), last))  # no more of a million
+        up_to_wall = self._up_to_wall(system, start, float(times[-1]))
+        if up_to_wall.is_short(found) or up_to_wall.runs_into(seen).any():
+            kept = self._kept(system, start, float(times[-1]))
+            if kept.up_to_wall.wall is not None:
+                return kept(times)
+        rows = np.searchsorted(found.time, times[times <= found.time[-1]])
         if any(event.final for event in found.events) and last not in rows[-1:]:  # there, too, it is sampled
             rows = np.append(rows, last)
         return found.part(rows)
@@ -72,6 +78,10 @@ class Method:
         """Return what gives samples of one and the same run at any ascending instants up to its end, s."""
         if self.name == "exact":
             return self._up_to_wall(system, start, end)
+        return self._kept(system, start, end)
+
+    def _kept(self, system: RollingSystem, start: State, end: float) -> Dense:
+        """Return the same by a numerical method, gone through once."""
         from .dense import Dense
 
         module = import_module(f".{METHODS[self.name]}", __package__)

@@ -17,6 +17,7 @@ from .samples import Array, Event, Samples
 
 WALL = "wall"
 _LOOKS = 256  # at a run, evenly in its time
+_SHORT = 0.5  # of the time asked for, before which a run that ends has been looked at too seldom
 _PARTS, _PASSES = 17, 14  # into which the time between two of them is cut, again and again
 _AT_ONCE = 64  # instants, at each of which hundreds of points of the body are looked at
 _CLOSE = 1e-13  # of a run's time, by which what is found from other looks may be another instant
@@ -72,6 +73,8 @@ class UpToWall:
         clear, reached, between = self.begin, None, looks(self.begin, self.end)
         for _ in range(0 if fits_anywhere(self.system) else _PASSES):
             at = self.run(between)
+            if reached is None and self.is_short(at):
+                at = self.run(looks(self.begin, float(at.time[-1])))
             over = np.flatnonzero(self.runs_into(at))
             if not over.size:
                 break
@@ -80,6 +83,10 @@ class UpToWall:
             inside = np.linspace(clear, reached, _PARTS + 1)[1:-1]
             between = np.append(inside[(inside > clear) & (inside < reached)], reached)
         return reached
+
+    def is_short(self, at: Samples) -> bool:
+        """Tell whether a run is over so soon that looks at all of the time asked for are few."""
+        return bool(at.time[-1] - self.begin < _SHORT * (self.end - self.begin))
 
     def runs_into(self, at: Samples) -> NDArray[np.bool_]:
         """Tell where another part of the body is below the surface."""
@@ -93,7 +100,7 @@ def slack(tolerance: float) -> float:
 
 def looks(begin: float, end: float) -> Array:
     """Return when a run is looked at, s."""
-    return np.linspace(begin, end, _LOOKS + 1)
+    return np.unique(np.linspace(begin, end, _LOOKS + 1))
 
 
 def reach(system: RollingSystem, at: Samples) -> Array:
