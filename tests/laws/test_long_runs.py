@@ -215,9 +215,9 @@ def test_patience_reckons_with_what_a_step_of_a_law_costs(monkeypatch: pytest.Mo
     assert 3 * egg < ball <= 5.5e3
 
 
-def spent(course: Any, end: float = 1.0) -> float:
+def spent(course: Any, end: float = 1.0, steps: float = 1e15) -> float:
     """Return when patience is lost with work W(t), of which 1e5 is to spare; infinity where it is not."""
-    patience = Patience(0.0, end, steps=1e15, spare=1e5, name="It")
+    patience = Patience(0.0, end, steps=steps, spare=1e5, name="It")
     before, times = 0.0, np.linspace(0.0, end, 20_001)[1:]
     for time, done in zip(times.tolist(), np.broadcast_to(course(times), times.shape).tolist(), strict=True):
         try:
@@ -234,8 +234,9 @@ def spent(course: Any, end: float = 1.0) -> float:
         (lambda t: np.exp(60 * t), math.log(2e5) / 60),  # 1e26 in all
         (lambda t: np.exp(60 * t + np.sin(60 * t)), math.log(2e5) / 60),  # by fits and starts
         (lambda t: 30 * np.expm1(60 * t), math.log(2e5 / 30) / 60),
-        (lambda t: np.exp(24 * t), math.inf),  # 2e10, to which there were 17 doublings to come
+        (lambda t: np.exp(24 * t), math.inf),  # 2e10, fewer than it may take
         (lambda t: 1e5 * np.exp(60 * (t - 0.9)), math.inf),  # too late for more than some hundred times as much
+        (lambda t: 2e6 * t**16, math.inf),
         (lambda t: 1e8 * t, math.inf),
         (lambda t: 1e9 * t**8, math.inf),
         (lambda t: 1e12 * np.maximum(t - 0.5, 0.0), math.inf),  # after a time in which nothing happened
@@ -246,6 +247,14 @@ def spent(course: Any, end: float = 1.0) -> float:
 def test_patience_is_lost_at_once_where_work_doubles_without_end_and_there_alone(course: Any, lost: float) -> None:
     found = spent(course)
     assert found == lost or lost <= found <= lost + math.log(2.5) / 60
+
+
+@pytest.mark.parametrize(("total", "lost"), [(1e6, False), (3e6, False), (2e7, True), (1e9, True)])
+def test_patience_is_lost_early_where_doubling_work_comes_to_several_times_what_it_may_take(
+    total: float, lost: bool
+) -> None:
+    found = spent(lambda t: total**t, steps=3e6)
+    assert (found <= 1.01 * math.log(2.5e5, total)) == lost
 
 
 def test_a_ball_thrown_outwards_over_hill_after_hill_is_given_up_before_a_minute_went_into_it(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from ..errors import SolverError, TrundleError
 
 _NOWHERE, _DEARER = 1e-10, 3  # steps of so small a share of the run lead nowhere, and count so many times
 # Doublings of the work done, up to twice what is to spare: so many tell how long one takes, no longer in their later
-# half than in their earlier; with so many more to come the end is out of reach. Even work takes ever longer for one.
-_SEEN, _TO_COME, _NO_LONGER = 8, 20, 1.1
+# half than in their earlier. Even work takes ever longer for one. Where as long a doubling leads to so many times all
+# steps, the end is out of reach.
+_SEEN, _NO_LONGER, _BEYOND = 8, 1.12, 4
 
 
 class Patience:
@@ -52,6 +55,7 @@ class Patience:
     ) -> None:
         span = max(end - begin, 1e-300)
         self.time, self.pace, self.spare, self.nowhere = begin, steps / span, spare, _NOWHERE * span
+        self.beyond = _BEYOND * (steps + spare)
         self.name, self.error = name, error
         self.owed = 0.0  # steps taken beyond the even ones
         self.end, self.done = end, 0.0
@@ -81,4 +85,5 @@ class Patience:
             return False
         earlier, middle, last = (self.doubled[-1 - back] for back in (_SEEN, _SEEN // 2, 0))
         each = (last - middle) / (_SEEN - _SEEN // 2)
-        return last - middle <= _NO_LONGER * (middle - earlier) and self.end - last > _TO_COME * each
+        to_come = math.log2(self.beyond / self.done)
+        return last - middle <= _NO_LONGER * (middle - earlier) and self.end - last > to_come * each
