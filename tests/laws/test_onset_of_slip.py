@@ -19,6 +19,7 @@ from trundle.solve.creeping import SEEN, CreepingLaw
 from trundle.solve.laws import Law, RollingLaw
 from trundle.solve.lowering import Lowered
 from trundle.solve.slip_onset import slip_onset
+from trundle.solve.tracing import python_law
 from trundle.solve.transitions import PhaseStart
 
 RADIUS = 0.327145
@@ -229,3 +230,93 @@ motion = { kind = "move", position = ["0.00157133 + 0.00178206*t", 0.0, -0.00246
     assert "slip" in [event.kind for event in run.events]
     assert steps[0] < 500 * len(run.events)
     assert run.card().passed
+
+
+# A ball in a narrow cone that rocks grips and slips three hundred times a second; most of each slip goes straight.
+GRIPS_AND_SLIPS = """
+body = { kind = "sphere-with-moment", radius = 0.0471654, mass = 0.5034, moment_of_inertia = 0.000307893 }
+start = { position = [0.0416348, -0.0283524], velocity = [1.66523, 0.0749157, 0.0], spin = 0.13775 }
+[support]
+kind = "cone"
+half_angle = 0.0321068
+friction = 0.056663
+motion = { kind = "rock", amplitude = 1.02199, rate = -0.103909 }
+"""
+
+
+def gripping_and_slipping(method: str, duration: float) -> tr.Trajectory:
+    run = f'run = {{ method = "{method}", duration = {duration}, every = {duration / 20} }}'
+    return tr.Scenario.loads(run + GRIPS_AND_SLIPS).run()
+
+
+def test_series_come_to_the_end_of_slip_after_slip_as_runge_kutta_does() -> None:
+    """They hardly got on after 60 slips: each took 1600 steps, since it was handed on to them too soon."""
+    ours, theirs = (gripping_and_slipping(method, 0.55) for method in ("taylor", "runge-kutta"))
+    assert [event.kind for event in ours.events] == [event.kind for event in theirs.events]
+    assert len(ours.events) > 100
+    apart = [abs(mine.time - other.time) for mine, other in zip(ours.events, theirs.events, strict=True)]
+    assert max(apart) <= 1e-10
+    assert float(abs(ours.data.position - theirs.data.position).max()) <= 1e-10
+
+
+def test_where_slip_is_handed_on_late_shows_no_more_than_its_law_leaves_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs = []
+    for many in (0, 10**9):
+        monkeypatch.setattr(runge_kutta, "_TOO_MANY_IN_SERIES", many)
+        runs.append(gripping_and_slipping("taylor", 0.43))
+    late, soon = runs
+    assert [event.kind for event in late.events] == [event.kind for event in soon.events]
+    assert max(abs(a.time - b.time) for a, b in zip(late.events, soon.events, strict=True)) <= 1e-12
+    assert float(abs(late.data.position - soon.data.position).max()) <= 1e-12
+
+
+@pytest.mark.parametrize("which", GIVES_WAY)
+def test_machine_code_gives_what_a_law_gives_in_python(which: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    system = tr.RollingSystem(GIVES_WAY[which], SHAKEN)
+    creeping, following = first_slip(system, monkeypatch)
+    state = following.state_vector
+    numbers = [*state[:10], float(np.linalg.norm(state[10:13])), *state[13:]]
+    for law, known in ((creeping, numbers), (RollingLaw(), state[:10])):
+        plain = python_law(system, law, (0.0,) * law.event_parameters, following.time, known)
+        assert plain.in_machine_code is not None
+        code = plain.in_machine_code()
+        assert code is not plain
+        for after in (0.0, 1e-5, 1e-4):
+            at = following.time + after, known
+            # slopes are differences of what is rounded over a ten-thousandth of the time in which the motion changes
+            np.testing.assert_allclose(code.rates(*at), plain.rates(*at), rtol=1e-10, atol=1e-10)
+            np.testing.assert_allclose(code.event_functions(*at), plain.event_functions(*at), rtol=1e-8, atol=1e-9)
+
+
+def test_a_law_on_a_table_has_no_machine_code_and_stays_as_it_is() -> None:
+    side = [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3]
+    dish = tr.HeightField.through(side, side, [[x * x + y * y for y in side] for x in side])
+    system = tr.RollingSystem(GIVES_WAY["an egg"], tr.Support(dish))
+    law = python_law(system, RollingLaw())
+    assert law.in_machine_code is not None
+    assert law.in_machine_code().rates is law.rates
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_machine_code_is_taken_after_so_many_steps_of_one_run(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = list[int]()
+    taken: Any = python_law
+
+    def watched(system: Any, law: Law, *given: Any) -> Any:
+        traced = taken(system, law, *given)
+
+        def in_machine_code() -> Any:
+            begun.append(1)
+            return traced.in_machine_code()
+
+        return replace(traced, in_machine_code=in_machine_code)
+
+    monkeypatch.setattr(runge_kutta, "python_law", watched)
+    monkeypatch.setattr(runge_kutta, "_TOO_MANY_IN_SERIES", 0)
+    counts = []
+    for duration in (0.4, 0.5, 0.5, 0.4):  # whatever other runs have come through
+        gripping_and_slipping(method, duration)
+        counts.append(len(begun))
+        begun.clear()
+    assert counts[0] == counts[3] == 0
+    assert counts[1] == counts[2] > 10

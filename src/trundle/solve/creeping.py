@@ -26,8 +26,9 @@ from .tracing import python_law
 SETTLES_FAST = 30.0
 _LEFT_OUT = 1e-11
 # How many times its direction must settle in the time in which the motion changes to be followed by this law before a
-# method of series goes on: a step of this one takes as long as some sixty of its, of seven such times each.
-_IN_SERIES = 2e5
+# method of series goes on: a step of this one takes as long as some sixty of its, of seven such times each. Where
+# series have taken long, later: that gives up the last two digits of a direction for four fifths of the time.
+_IN_SERIES, _LATE = 2e5, 5e3
 _TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
 _LASTS = 50.0  # times the step over which its turning is seen: about how long it holds
 SEEN = 1e-4  # of the time in which the motion changes: over it one sees how the direction turns
@@ -97,10 +98,11 @@ class CreepingLaw(SlippingLaw):
         """Return the same law with another direction near which slip keeps one."""
         return CreepingLaw(self.weightless, self.turning, self.step, self.since, floats(direction))
 
-    def before_series(self) -> CreepingLaw:
+    def before_series(self, *, late: bool = False) -> CreepingLaw:
         """Return the same law, handed on where series follow its direction with less work."""
         near = self.near_x, self.near_y, self.near_z
-        return CreepingLaw(self.weightless, self.turning, self.step, self.since, near, _IN_SERIES)
+        in_series = _LATE if late else _IN_SERIES
+        return CreepingLaw(self.weightless, self.turning, self.step, self.since, near, in_series)
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
         """Tell that no direction has to settle."""

@@ -52,6 +52,8 @@ _BEGINNING = 20  # steps, after which one sees how many there will be
 _SEEN = 0.0005  # share of the steps to come to be done first: where slip begins, there seem to be far too many
 _TRIED = 0.1  # share of the steps that are worth compiling to be done first: no more is lost where few come after all
 _GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
+_TOO_MANY_IN_SERIES = 10_000  # steps of series, from where brief laws were handed on: a second
+_WORTH_MACHINE_CODE = 150  # steps of a brief law in a run, which take half as long as to compile it, whatever it is
 TO_COMPILE = (2e8, 4.4e6)  # products in the time in which numba compiles a law, and for each operation of it
 
 
@@ -61,10 +63,26 @@ class Taken:
 
     steps: Counter[type[Law]] = field(default_factory=Counter)
     compiled: set[Any] = field(default_factory=set)  # their identities
+    in_series: int = 0  # steps by series from where a brief law was handed on to them
+    handed_on: bool = False  # whether the last stretch was one of a brief law
+
+    @property
+    def too_soon(self) -> bool:
+        """Whether brief laws seem to have been handed on too soon: series took long from there on."""
+        return self.in_series > _TOO_MANY_IN_SERIES
+
+    def counts(self, law: Law) -> Callable[[], bool]:
+        """Return what takes account of a step of a law that is not compiled for numba's loop."""
+
+        def counted() -> bool:
+            self.steps[type(law)] += 1
+            return False
+
+        return counted
 
     def copy(self) -> Taken:
         """Return another that goes on from here."""
-        return Taken(Counter(self.steps), set(self.compiled))
+        return Taken(Counter(self.steps), set(self.compiled), self.in_series)
 
 
 class Path(Protocol):
@@ -206,6 +224,8 @@ def _integrated(
     """Follow one law to its first stop; all times count from its beginning."""
     taken = Taken() if taken is None else taken
     law, begin, traced = now.law, now.time, _traced(system, now)
+    if law.brief and traced.in_machine_code is not None and taken.steps[type(law)] > _WORTH_MACHINE_CODE:
+        traced = traced.in_machine_code()
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
@@ -278,8 +298,8 @@ def _paths(
         with np.errstate(over="ignore", invalid="ignore"):  # of a first step that is tried
             stepper = DOP853(rates, t, y, end, max_step=longest, **given)
         compiles = traced.compiled is not None and available()
-        to_come = _StepsToCome(law, traced, begin, stepper, taken)
-        yield from _one_by_one(stepper, to_come.worth_compiling if compiles else lambda: False)
+        counted = _StepsToCome(law, traced, begin, stepper, taken).worth_compiling if compiles else taken.counts(law)
+        yield from _one_by_one(stepper, counted)
         if stepper.status == "running" and traced.compiled is not None:
             taken.compiled.add(law.identity)
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least, longest)

@@ -96,10 +96,11 @@ def integrate(
     shared: Shared | None = None,
 ) -> Iterator[Segment]:
     """Follow one law to its first stop."""
-    if now.law.brief:
-        yield from runge_kutta.integrate(system, before_series(now), times, runge_kutta.FINEST, progress)
-        return
     shared = Shared() if shared is None else shared
+    if now.law.brief:
+        brief, shared.brief.handed_on = before_series(now, late=shared.brief.too_soon), True
+        yield from runge_kutta.integrate(system, brief, times, runge_kutta.FINEST, progress, shared.brief)
+        return
     goes_on: PhaseStart | None = now
     while goes_on is not None:
         now, goes_on = goes_on, None
@@ -122,9 +123,9 @@ def integrate(
                 yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
 
 
-def before_series(now: PhaseStart) -> PhaseStart:
+def before_series(now: PhaseStart, *, late: bool = False) -> PhaseStart:
     """Return a brief law as it is followed where series go on."""
-    return replace(now, law=now.law.before_series())
+    return replace(now, law=now.law.before_series(late=late))
 
 
 def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing) -> PhaseStart | None:
@@ -196,6 +197,7 @@ class Shared:
 
     efforts: dict[str, _Effort] = field(default_factory=dict)  # for each law
     end: float = math.inf  # of the run, s
+    brief: runge_kutta.Taken = field(default_factory=runge_kutta.Taken)  # what it has come through of brief laws
     _patience: Patience | None = None
 
     def patience(self, begin: float, end: float) -> Patience:
@@ -210,7 +212,8 @@ class Shared:
 
     def another(self) -> Shared:
         """Return the same for another run of this system: for it, too, is there what was made with care."""
-        return Shared({key: _Effort(one.cost, one.tolerance, one.level) for key, one in self.efforts.items()})
+        efforts = {key: _Effort(one.cost, one.tolerance, one.level) for key, one in self.efforts.items()}
+        return Shared(efforts, brief=self.brief.copy())
 
 
 def first_steps(
@@ -238,9 +241,10 @@ def dense(
     shared: Shared | None = None,
 ) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step."""
-    if now.law.brief:
-        return runge_kutta.dense(system, before_series(now), end, runge_kutta.FINEST, most)
     shared = Shared() if shared is None else shared
+    if now.law.brief:
+        brief, shared.brief.handed_on = before_series(now, late=shared.brief.too_soon), True
+        return runge_kutta.dense(system, brief, end, runge_kutta.FINEST, most, shared.brief)
     legs: list[Leg | TooMany] = []
     ends: list[float] = []
     goes_on: PhaseStart | None = now
@@ -309,6 +313,7 @@ def _begun(system: RollingSystem, now: PhaseStart, end: float, tolerance: float,
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
         run = _Run(borrow, shared.effort(key, lowered.cost, tolerance), system, lowered, given, now)
         run.patience, run.end, run.lasted = shared.patience(now.time, end), shared.end, lasted(system, now)
+        run.after_brief, shared.brief.handed_on = shared.brief if shared.brief.handed_on else None, False
         yield run
 
 
@@ -354,6 +359,7 @@ class _Run:
         self.effort.pause = _FIRST_LOOK
         self.integrator = borrow(self.level)
         self.patience: Patience
+        self.after_brief: runge_kutta.Taken | None = None  # where it goes on with what a brief law has begun
         self.progress: Progress | None = None
         self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
         self.lasted, self.begun, self.end = math.inf, now.time, math.inf
@@ -460,6 +466,8 @@ class _Run:
 
         now = self.time
         self.effort.after(steps, now - self.counted_from)
+        if self.after_brief is not None:
+            self.after_brief.in_series += steps
         goes_on = outcome in (heyoka.taylor_outcome.step_limit, heyoka.taylor_outcome.time_limit)
         if goes_on and self.effort.steps >= _FIRST_LOOK:
             growing = self.integrator.last_h * self.effort.pace > _GROWING

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any
 
@@ -50,6 +50,8 @@ class PythonLaw:
         () -> the same for numba's loop, which takes a second to compile; absent: it cannot be traced.
     operations : int
         About how many the rates are.
+    in_machine_code : callable, optional
+        () -> the same law in machine code, which takes half a second to compile; where it cannot be, itself.
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
@@ -59,6 +61,7 @@ class PythonLaw:
     corners: Callable[[float, Sequence[float]], list[float]]
     compiled: Callable[[], CompiledLaw] | None = None
     operations: int = _UNTRACED
+    in_machine_code: Callable[[], PythonLaw] | None = None
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -109,7 +112,7 @@ def python_law(
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *event_parameters]
     flat = _known(system, law, tuple(own))
-    return PythonLaw(
+    traced = PythonLaw(
         lambda t, y: flat.rates([t, *y, *values]),
         lambda t, y: flat.event_functions([t, *y, *values]),
         flat.names,
@@ -118,6 +121,19 @@ def python_law(
         lambda: CompiledLaw(*flat.compiled, len(flat.names), tuple(map(float, values))),
         flat.operations,
     )
+
+    def in_machine_code() -> PythonLaw:
+        if flat.machine_code is None:
+            return traced
+        both = flat.machine_code
+        return replace(
+            traced,
+            rates=lambda t, y: both([t, *y, *values])[: len(y)],
+            event_functions=lambda t, y: both([t, *y, *values])[len(y) :],
+            compiled=None,
+        )
+
+    return replace(traced, in_machine_code=in_machine_code)
 
 
 _Function = Callable[[Sequence[float]], list[float]]
@@ -134,6 +150,12 @@ class _Flat:
     corners: _Function
     filling: Callable[[], tuple[Any, Any]]
     operations: int
+    compiling: Callable[[], _Function | None]
+
+    @cached_property
+    def machine_code(self) -> _Function | None:
+        """Rates and event functions, one after the other, in machine code."""
+        return self.compiling()
 
     @cached_property
     def compiled(self) -> tuple[Any, Any]:
@@ -182,7 +204,12 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
 
         return compiled(tape, rates), compiled(tape, list(stops.values()))
 
-    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)))
+    def compiling() -> _Function | None:
+        from .lowering import machine_code
+
+        return machine_code(tape, [*rates, *stops.values()])
+
+    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)), compiling)
 
 
 def _recorded(state: Sequence[Scalar]) -> list[Scalar]:

@@ -80,7 +80,7 @@ class Law:
         """Return a copy of which a tape may replace the numbers."""
         return copy(self)
 
-    def before_series(self) -> Law:
+    def before_series(self, *, late: bool = False) -> Law:  # noqa: ARG002
         """Return the law as it is followed until a method of series goes on: a brief one may be handed on sooner."""
         return self
 
