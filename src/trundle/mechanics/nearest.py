@@ -54,7 +54,10 @@ def nearest(
 
     contact = contact_at(system, time, point, orientation, coordinates)
     with np.errstate(all="ignore"):  # by the end of a formula
-        _, aside, down = beside(system, contact, centre)
+        try:
+            _, aside, down = beside(system, contact, centre)
+        except ZeroDivisionError:  # from a focal point many are as near
+            return contact
         step = aside + down
         small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
     moved = Vector(*(_either(small, there + by, there) for there, by in zip(point, step, strict=True)))

@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import OutOfDomainError, SolverError, TurnsTooFastError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at, normal_on
+from ..mechanics.duals import value_of
 from ..mechanics.motions import SupportState
 from ..mechanics.nearest import closest_contact
 from ..mechanics.records import frozen_record
@@ -21,6 +22,7 @@ from . import phases
 from .contact_state import ContactState, floats
 from .exact import ClosedForm, form_of_phase, refusals
 from .first_stop import first_stop
+from .focal import ASIDE
 from .laws import Law
 from .orientation import orientation, periodic_orientation
 from .phases import Segment, cut
@@ -238,7 +240,15 @@ def _contact(
         return place + ZERO * time
     if law.code == FLIGHT:
         support = system.support.motion.at(time, *coordinates)
-        return _under(system, support, normal_on(system, support, centre), centre)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = _under(system, support, normal_on(system, support, centre), centre)
+            known = np.isfinite(np.asarray(value_of(found.x), dtype=float))
+            if known.all():
+                return found
+            # In the middle of a tube all sides are as near.
+            aside = centre + Vector(1.0, 1.0, 1.0) * (ASIDE * abs(system.support.surface.level(support.local(centre))))
+            other = _under(system, support, normal_on(system, support, aside), aside)
+        return Vector(*(np.where(known, part, own) for part, own in zip(found, other, strict=True)))
     return centre + contact_at(system, time, centre, q, coordinates).offset
 
 

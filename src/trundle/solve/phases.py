@@ -21,7 +21,7 @@ from ..mechanics.kinks import Kink, kinks_and_jolts
 from ..mechanics.records import frozen_record
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
-from . import corners, transitions
+from . import corners, focal, transitions
 from .contact_state import ContactState
 from .laws import CORNER, Law, RollingLaw, SlippingLaw
 from .patience import Patience
@@ -230,6 +230,9 @@ def _following(
     system: RollingSystem, law: Law, stop: ZeroCrossing, behind: Callable[[PhaseStart], PhaseStart]
 ) -> PhaseStart | None:
     """Return what follows a stop, None where the run ends."""
+    if focal.is_focal(law, stop):
+        follows = focal.past_it(system, law, stop)
+        return None if follows is None else behind(follows)
     ends = stop.name in ENDS or _spinning_on(system, law, stop)
     return None if ends else behind(following_stop(system, law, stop))
 
@@ -421,6 +424,8 @@ def _across(
 
 def _short_of_it(system: RollingSystem, law: Law, stop: ZeroCrossing, times: Array) -> Array:
     """Return the states between a stop and its event: straight where slip or turning ends, for beyond no law holds."""
+    if focal.is_focal(law, stop):
+        return focal.flown(system, law, stop, times)
     numbers = stop.state_vector.tolist()
     if stop.name.removeprefix("near ") in ("grip", "stop"):
         rates = np.array([float(rate) for rate in law.rates(system, stop.time, numbers)])
@@ -474,7 +479,8 @@ def ended_in_words(system: RollingSystem, name: str, time: float) -> str:
 def following_stop(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     """Return what follows a stop, or say that nothing can be worked out there."""
     try:
-        return transitions.after(system, law, stop)
+        past = focal.past_it(system, law, stop) if focal.is_focal(law, stop) else None
+        return transitions.after(system, law, stop) if past is None else past
     except (ArithmeticError, ValueError) as error:
         raise SolverError(
             f"What follows at t = {stop.time:.9g} s cannot be worked out ({error}): the contact is singular there."

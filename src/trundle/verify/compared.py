@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import OutOfDomainError, TurnsTooFastError
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem, State
 from ..solve.dense import Dense
 from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
-from ..solve.samples import SLIPPING, Event, Samples
+from ..solve.samples import FLIGHT, SLIPPING, Event, Samples
 from .bounds import (
     A_ROUNDING,
     A_STEP,
@@ -175,7 +177,8 @@ class Compared:
         """The difference at each sample, as a share; at a singular end only the orientation says something."""
         known = self.alike.copy()
         known[before_a_singular_end(self.ours).time.size :] = False
-        apart = _difference(self.ours, self.theirs, self.sizes, {"contact_force": self._swung})
+        blurred = {"contact_force": self._swung, "contact": self._passed_on}
+        apart = _difference(self.ours, self.theirs, self.sizes, blurred)
         return np.where(known, apart, 0.0)
 
     @cached_property
@@ -190,6 +193,21 @@ class Compared:
             slower = np.minimum(np.linalg.norm(s, axis=1), np.linalg.norm(other, axis=1))
             friction = np.linalg.norm(normal_and_friction(self.system, ours)[1], axis=1)
             found[which] = friction * np.minimum(2.0, 2 * apart / np.maximum(slower, 1e-300))
+        return found
+
+    @cached_property
+    def _passed_on(self) -> Array:
+        """How far what the place may be off moves a nearest point in flight, m: by a focal point, anywhere."""
+        which = np.flatnonzero((self.ours.phase == FLIGHT) & (self.theirs.phase == FLIGHT))
+        found = np.zeros(self.ours.time.size)
+        if which.size and "contact" in self.sizes:
+            ours = self.ours.part(which)
+            contact = contact_at(
+                self.system, ours.time, Vector.of(ours.contact), Quaternion.of(ours.orientation), ours.support_columns
+            )
+            gap = (Vector.of(ours.position) + contact.offset - contact.point).dot(contact.normal)
+            with np.errstate(divide="ignore"):
+                found[which] = self.bound * self.sizes["position"] / np.abs(contact.relative_curvature_determinant(gap))
         return found
 
     @cached_property

@@ -23,7 +23,7 @@ from ...mechanics.parameters import with_numbers
 from ...mechanics.placing import SLIP_TOLERANCE
 from ...mechanics.slipping import slip
 from ...mechanics.system import RollingSystem, State
-from ...solve import corner_events, corners, phases, runge_kutta, taylor, transitions
+from ...solve import corner_events, corners, focal, phases, runge_kutta, taylor, transitions
 from ...solve.contact_state import ContactState
 from ...solve.laws import CONTACT, CORNER, Law, SlippingLaw, state_turning
 from ...solve.phases import Follows, Integrate, Segment
@@ -263,7 +263,7 @@ class VariationalRun:
             numbers: Any = np.array(state, dtype=object)
             known = transitions.jolted(self.duals, law, kink, numbers) if stop.name == JOLT else None
             return ZeroCrossing(stop.time, stop.name, numbers, known)
-        if stop.name in law.handed_on:  # the same motion goes on by another law, whenever it is handed on
+        if stop.name in law.handed_on or focal.is_focal(law, stop):  # the same motion goes on, wherever it is taken up
             return ZeroCrossing(stop.time, stop.name, np.array(state, dtype=object))
         state = self._with_direction(law, state)
         rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
