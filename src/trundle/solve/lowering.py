@@ -326,8 +326,25 @@ def _value(kind: str, found: Iterator[float], reference: float) -> float:
     return math.cos(angle) if kind == "cos" else math.sin(angle)
 
 
-def machine_code(tape: Tape, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]] | None:
-    """Return the function of a tape's inputs that gives some outputs, compiled in haste; None where heyoka cannot.
+def has_machine_code(tape: Tape, *outputs: Sequence[Any]) -> bool:
+    """Tell whether heyoka is here, and knows all that some outputs of a tape lean on: tables and loops it does not.
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, y = tape.inputs(2)
+    >>> has_machine_code(tape, [x * y], [x + y]) in (True, False)
+    True
+    """
+    from importlib.util import find_spec
+
+    known = {"input", *_SUMS, *_HEYOKA}
+    needed = tape.needed([one for part in outputs for one in part])
+    return find_spec("heyoka") is not None and all(tape.steps[i][0] in known for i in needed)
+
+
+def machine_code(tape: Tape, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]]:
+    """Return the function of a tape's inputs that gives some outputs, compiled in haste.
 
     Examples
     --------
@@ -336,11 +353,6 @@ def machine_code(tape: Tape, outputs: Sequence[Any]) -> Callable[[Sequence[float
     >>> machine_code(tape, [x * y + 1.0, x * y])([3.0, 2.0])
     [7.0, 6.0]
     """
-    from importlib.util import find_spec
-
-    known = {"input", *_SUMS, *_HEYOKA}
-    if find_spec("heyoka") is None or not all(tape.steps[i][0] in known for i in tape.needed(outputs)):
-        return None
     import heyoka
 
     inputs = heyoka.make_vars(*(f"x_{i}" for i in range(tape.size)))

@@ -53,7 +53,9 @@ _SEEN = 0.0005  # share of the steps to come to be done first: where slip begins
 _TRIED = 0.1  # share of the steps that are worth compiling to be done first: no more is lost where few come after all
 _GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
 _TOO_MANY_IN_SERIES = 10_000  # steps of series, from where brief laws were handed on: a second
-_WORTH_MACHINE_CODE = 150  # steps of a brief law in a run, which take half as long as to compile it, whatever it is
+# Steps of a brief law in a run, which take half as long as to compile it, whatever it is; more where event functions
+# are other work than rates.
+_WORTH_MACHINE_CODE = 150
 TO_COMPILE = (2e8, 4.4e6)  # products in the time in which numba compiles a law, and for each operation of it
 
 
@@ -224,7 +226,8 @@ def _integrated(
     """Follow one law to its first stop; all times count from its beginning."""
     taken = Taken() if taken is None else taken
     law, begin, traced = now.law, now.time, _traced(system, now)
-    if law.brief and traced.in_machine_code is not None and taken.steps[type(law)] > _WORTH_MACHINE_CODE:
+    worth = _WORTH_MACHINE_CODE * traced.all_operations / traced.operations
+    if law.brief and traced.in_machine_code is not None and taken.steps[type(law)] > worth:
         traced = traced.in_machine_code()
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go

@@ -67,8 +67,8 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     hat = grown.direction
     slipping = _pushed(system, then, hat * speed, law)
     creeping = partial(CreepingLaw, step=SEEN / _FIRST * moment, since=time, near=floats(hat))
-    held = "held" if law.code == RESTING else "free"
-    if grown.settling * moment > SETTLES_FAST * speed and creeping(turning=held).settles(system, slipping):
+    turning = "held" if law.code == RESTING else "resisted" if system.resisted else "free"  # as it will be followed
+    if grown.settling * moment > SETTLES_FAST * speed and creeping(turning=turning).settles(system, slipping):
         return Onset(slipping, creeping, hat, ())
     near = min((0.25 * speed) ** 2, at.still(system) ** 2)
     return Onset(slipping, SlippingLaw, hat, (near, *floats(hat)))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
+from itertools import pairwise
 from typing import Any
 
 from ..mechanics.duals import has_duals
@@ -17,6 +18,7 @@ from .laws import Law, RollingLaw
 from .tape import Tape
 
 _MOST_TRACED = 64  # kept
+_LONG, _ALIKE = 2000, 1.1  # operations; times those of the rates that all outputs of a law are together at most
 _UNTRACED = 10_000  # operations that take as long as a law on vectors
 
 
@@ -50,6 +52,8 @@ class PythonLaw:
         () -> the same for numba's loop, which takes a second to compile; absent: it cannot be traced.
     operations : int
         About how many the rates are.
+    all_operations : int
+        About how many rates and event functions are.
     in_machine_code : callable, optional
         () -> the same law in machine code, which takes half a second to compile; where it cannot be, itself.
     """
@@ -61,6 +65,7 @@ class PythonLaw:
     corners: Callable[[float, Sequence[float]], list[float]]
     compiled: Callable[[], CompiledLaw] | None = None
     operations: int = _UNTRACED
+    all_operations: int = 2 * _UNTRACED
     in_machine_code: Callable[[], PythonLaw] | None = None
 
 
@@ -120,16 +125,17 @@ def python_law(
         lambda t, y: flat.corners([t, *y, *values]),
         lambda: CompiledLaw(*flat.compiled, len(flat.names), tuple(map(float, values))),
         flat.operations,
+        flat.all_operations,
     )
 
     def in_machine_code() -> PythonLaw:
-        if flat.machine_code is None:
+        if not flat.machine_code:
             return traced
-        both = flat.machine_code
+        rates, event_functions = flat.machine_code
         return replace(
             traced,
-            rates=lambda t, y: both([t, *y, *values])[: len(y)],
-            event_functions=lambda t, y: both([t, *y, *values])[len(y) :],
+            rates=lambda t, y: rates([t, *y, *values]),
+            event_functions=lambda t, y: event_functions([t, *y, *values]),
             compiled=None,
         )
 
@@ -150,11 +156,12 @@ class _Flat:
     corners: _Function
     filling: Callable[[], tuple[Any, Any]]
     operations: int
-    compiling: Callable[[], _Function | None]
+    all_operations: int
+    compiling: Callable[[], tuple[_Function, ...]]
 
     @cached_property
-    def machine_code(self) -> _Function | None:
-        """Rates and event functions, one after the other, in machine code."""
+    def machine_code(self) -> tuple[_Function, ...]:
+        """Rates and event functions in machine code; nothing where there is none."""
         return self.compiling()
 
     @cached_property
@@ -197,19 +204,43 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     stops = corner_events.all_event_functions(symbolic, free, time, _recorded(state), own_stops)
     found = free.found(symbolic, time, state)
     vectors = [part for vector in corner_events.vectors(symbolic, free, time, state) for part in vector]
-    rates_, stops_, found_, vectors_ = (tape.function(part) for part in (rates, list(stops.values()), found, vectors))
+    values = list(stops.values())
+    rates_, stops_, found_, vectors_ = _functions(tape.function, tape, rates, values, found, vectors)
 
     def filling() -> tuple[Any, Any]:
         from .compiled_loop import compiled
 
-        return compiled(tape, rates), compiled(tape, list(stops.values()))
+        return compiled(tape, rates), compiled(tape, values)
 
-    def compiling() -> _Function | None:
-        from .lowering import machine_code
+    def compiling() -> tuple[_Function, ...]:
+        from .lowering import has_machine_code, machine_code
 
-        return machine_code(tape, [*rates, *stops.values()])
+        parts = rates, values
+        return _functions(partial(machine_code, tape), tape, *parts) if has_machine_code(tape, *parts) else ()
 
-    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)), compiling)
+    whole = len(tape.needed([*rates, *values]))
+    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)), whole, compiling)
+
+
+def _functions(
+    make: Callable[[Sequence[Any]], _Function], tape: Tape, *outputs: Sequence[Any]
+) -> tuple[_Function, ...]:
+    """Return a function for each of some lists of outputs; parts of one where long lists are all but the same work.
+
+    Python takes a tenth of a second to compile ten thousand operations.
+    """
+    together, edges = [one for part in outputs for one in part], [0]
+    for part in outputs:
+        edges.append(edges[-1] + len(part))
+    operations = len(tape.needed(outputs[0]))
+    if operations < _LONG or len(tape.needed(together)) > _ALIKE * operations:
+        return tuple(make(part) for part in outputs)
+    whole = make(together)
+
+    def between(begin: int, end: int) -> _Function:
+        return lambda x: whole(x)[begin:end]
+
+    return tuple(between(*pair) for pair in pairwise(edges))
 
 
 def _recorded(state: Sequence[Scalar]) -> list[Scalar]:
