@@ -175,7 +175,7 @@ def dense(
     paths = _Paths(np.asarray(now.state_vector, dtype=float), most)
 
     def work() -> float:
-        each = _traced(system, now).operations * _PRODUCTS * (_RATES + LOOKS)
+        each = python_law(system, now.law).operations * _PRODUCTS * (_RATES + LOOKS)
         by_scipy = sum(isinstance(path, _OneStep) * path.count for path in paths.paths)
         return by_scipy * (_OF_SCIPY + each) + (paths.count - by_scipy) * OF_A_STEP
 
@@ -226,9 +226,9 @@ def _integrated(
     """Follow one law to its first stop; all times count from its beginning."""
     taken = Taken() if taken is None else taken
     law, begin, traced = now.law, now.time, _traced(system, now)
-    worth = _WORTH_MACHINE_CODE * traced.all_operations / traced.operations
-    if law.brief and traced.in_machine_code is not None and taken.steps[type(law)] > worth:
-        traced = traced.in_machine_code()
+    if law.brief and traced.in_machine_code is not None:
+        worth = _WORTH_MACHINE_CODE * traced.all_operations / traced.operations
+        traced = traced.in_machine_code() if taken.steps[type(law)] > worth else traced
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
