@@ -11,6 +11,7 @@ import pytest
 
 import trundle as tr
 from trundle import verify
+from trundle.analysis.many import running
 from trundle.mechanics.overlap import TOUCHING, fits_anywhere
 from trundle.mechanics.shapes import Ellipsoid
 from trundle.solve.methods import Method
@@ -190,3 +191,46 @@ def test_a_ball_inside_a_tube_lies_within_it_wherever_it_touches(radius: float) 
     assert not fits_anywhere(tr.RollingSystem(tr.Body.solid_sphere(0.11, 1.0), tr.Support(track)))
     outside = tr.Support(tr.TorusTrack(ring, tube, "outside"))
     assert not fits_anywhere(tr.RollingSystem(tr.Body.solid_sphere(radius, 1.0), outside))
+
+
+@pytest.mark.parametrize("radii", [(A,), (0.8 * A, 0.9 * A, A, 1.1 * A)], ids=["one system", "a system each"])
+def test_members_that_come_to_a_wall_end_there_and_change_no_other(
+    radii: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    alone = list[int]()
+    put = running.Runs.put_alone
+    monkeypatch.setattr(
+        running.Runs, "put_alone", lambda self, member, *given: [alone.append(member), put(self, member, *given)][1]
+    )
+    support = tr.Support(tr.HeightField("sqrt(x**2 + 1e-14)"))
+    systems = [tr.RollingSystem(tr.Body.solid_sphere(a, 1.0), support) for a in radii]
+    systems *= 8 // len(systems)
+    places = (0.05, -0.05, 0.2, 0.25, 0.3, -0.3, 0.06, 0.22)
+    starts = [system.place((x, 0.0)) for system, x in zip(systems, places, strict=True)]
+    runs = tr.simulate_many(systems, starts, duration=0.25, every=0.01)
+    for member, (system, start) in enumerate(zip(systems, starts, strict=True)):
+        run = tr.simulate(system, start, duration=0.25, every=0.01, method="taylor")
+        assert runs.ending.values[member] == ("wall" if run.events else "")
+        assert runs.end.values[member] == pytest.approx(run.samples.time[-1], abs=1e-13)
+        kept = np.isfinite(runs.position.values[member, :, 0]).sum()
+        assert kept == (run.samples.time <= 0.25).sum() - bool(run.events)
+        np.testing.assert_allclose(runs.position.values[member, :kept], run.samples.position[:kept], atol=1e-14)
+    assert sorted(alone) == [member for member, x in enumerate(places) if abs(x) < 0.1]
+
+
+def test_members_that_fit_everywhere_are_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(running, "reach", None)
+    system = tr.RollingSystem(tr.Body.solid_sphere(A, 1.0), tr.Support(tr.Bowl(0.5)))
+    runs = tr.simulate_many(system, [system.place((x, 0.0)) for x in (0.1, 0.2)], duration=0.1, every=0.01)
+    assert runs.ending.values.tolist() == ["", ""]
+
+
+def test_of_a_member_no_more_than_seventeen_samples_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[int] = []
+    reach = running.reach
+    monkeypatch.setattr(running, "reach", lambda system, at: [seen.append(at.time.size), reach(system, at)][1])
+    system = valley()
+    starts = [system.place((x, 0.0)) for x in (0.2, 0.3)]
+    tr.simulate_many(system, starts, duration=0.1, every=1e-4)
+    tr.simulate_many(system, starts, duration=0.1, every=0.05)
+    assert seen == [34, 6]  # what docs/many-at-once.md says

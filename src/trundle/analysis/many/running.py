@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from ...errors import InvalidValueError, TrundleError
 from ...mechanics.finiteness import check_finite, varies
 from ...mechanics.kinks import has_kinks
+from ...mechanics.overlap import fits_anywhere
 from ...mechanics.parameters import parameters, structure_of
 from ...mechanics.system import RollingSystem, State
 from ...simulation import labels
@@ -22,9 +24,10 @@ from ...solve import taylor
 from ...solve.ensemble import numbers_of
 from ...solve.laws import RollingLaw
 from ...solve.methods import Method
-from ...solve.samples import Event, Progress
+from ...solve.samples import Event, Progress, Samples
 from ...solve.sampling import MOST_SAMPLES, check_clock, sample_times
 from ...solve.transitions import PhaseStart
+from ...solve.walls import reach, slack
 from ...units import UNITS
 from .on_device import ERROR, OnDevice, check_device
 
@@ -34,6 +37,7 @@ if TYPE_CHECKING:
     from ...simulation.trajectory import Trajectory
     from ...solve.ensemble import Block
 
+_LOOKS = 17  # at each member, at most
 ENDED = -1  # the phase of a member whose run is over
 
 
@@ -290,6 +294,7 @@ def _together(
     simple = [plainly[row] and not (systems[i].resisted or systems[i].corners) for row, i in enumerate(sound)]
     rolling = [i for i, rolls in zip(sound, simple, strict=True) if rolls]
     left = set(range(len(systems)))
+    tolerance = taylor.TOLERANCE if device is None else ERROR
     if rolling and device is not None:
         stopped, errors = OnDevice(systems, states, times, device).follow(rolling, result.put)
         result.error = np.full(len(systems), np.nan)
@@ -297,7 +302,7 @@ def _together(
         result.error[stopped] = np.nan
         left -= set(rolling).difference(stopped)
     if not taylor.available():
-        return sorted(left)
+        return sorted(left | _through_walls(result, systems, left, tolerance))
     begins: dict[int, State | PhaseStart] = {
         i: PhaseStart(RollingLaw(), starts[i], states[i].tolist()) for i in rolling if i in left
     }
@@ -305,11 +310,26 @@ def _together(
         if _passes(check_start, systems[i], starts[i], float(times[-1])):
             begins[i] = starts[i]
     if not begins:
-        return sorted(left)
+        return sorted(left | _through_walls(result, systems, left, tolerance))
     count = min(workers or ensemble.cores(), -(-len(begins) // ensemble.LANES))
     _, events = ensemble.integrate(systems, begins, times, result.put, workers=count, unrolled=unrolled)
     result.put_events(events)
-    return sorted(left.difference(events))
+    left = left.difference(events)
+    return sorted(left | _through_walls(result, systems, left, tolerance))
+
+
+def _through_walls(result: Runs, systems: Sequence[RollingSystem], left: set[int], tolerance: float) -> set[int]:
+    """Return members, of those that are done, of which a part is below the surface in a sample: each is run alone."""
+    found, of = set[int](), dict[int, list[int]]()
+    for member, system in enumerate(systems):
+        if member not in left:
+            of.setdefault(id(system), []).append(member)
+    for members in of.values():
+        system = systems[members[0]]
+        if not fits_anywhere(system):
+            whose, samples = result.looks(members)
+            found.update(whose[reach(system, samples) > slack(tolerance)].tolist())
+    return found
 
 
 def _sound(systems: Sequence[RollingSystem], starts: Sequence[State], times: Any) -> list[int]:
@@ -336,7 +356,7 @@ class Runs:
 
     def __init__(self, system: RollingSystem, members: int, times: Any, progress: Progress | None) -> None:
         self.times, self.progress = times, progress
-        self.facts = labels.facts(system)
+        self.facts, self.coordinate_names = labels.facts(system), labels.coordinate_names(system)
         sizes = {"time": times.size, "axis": 3, "quaternion": 4}
         self.arrays = {
             name: np.full(
@@ -370,6 +390,18 @@ class Runs:
             if last.final:
                 self.end[member], self.ending[member], self.reason[member] = last.time, last.kind, last.text
         self._tell(list(happened), 1.0)
+
+    def looks(self, members: Sequence[int]) -> tuple[Any, Samples]:
+        """Return some samples of some members, evenly from the first to the last that each has, and whose they are."""
+        counts = (self.arrays["phase"][members] != ENDED).sum(axis=1)
+        evenly = [np.unique(np.linspace(0, count - 1, _LOOKS).astype(int)) for count in counts if count]
+        which = [member for member, count in zip(members, counts, strict=True) if count]
+        whose, rows = np.repeat(which, [each.size for each in evenly]), np.concatenate([*evenly, np.zeros(0, int)])
+        names = [field.name for field in fields(Samples) if field.name in self.arrays]
+        known = {name: self.arrays[name][whose, rows] for name in names}
+        support = [self.arrays[name][whose, rows] for name in self.coordinate_names]
+        coordinates = np.stack(support, axis=1) if support else np.zeros((rows.size, 0))
+        return whose, Samples(self.times[rows], **known, support_coordinates=coordinates)
 
     def put_alone(
         self, member: int, system: RollingSystem, start: State, duration: Any, every: Any, method: str
