@@ -16,7 +16,7 @@ from trundle.solve import corners, integrators, runge_kutta, taylor, transitions
 from trundle.solve.coming_off import lift_at_hand
 from trundle.solve.contact_state import ContactState
 from trundle.solve.creeping import SEEN, CreepingLaw
-from trundle.solve.laws import Law, RollingLaw
+from trundle.solve.laws import Law, RollingLaw, SlippingLaw
 from trundle.solve.lowering import Lowered
 from trundle.solve.slip_onset import slip_onset
 from trundle.solve.tracing import python_law
@@ -286,6 +286,19 @@ def test_machine_code_gives_what_a_law_gives_in_python(which: str, monkeypatch: 
             # slopes are differences of what is rounded over a ten-thousandth of the time in which the motion changes
             np.testing.assert_allclose(code.rates(*at), plain.rates(*at), rtol=1e-10, atol=1e-10)
             np.testing.assert_allclose(code.event_functions(*at), plain.event_functions(*at), rtol=1e-8, atol=1e-9)
+
+
+def test_rates_want_no_numbers_of_event_functions_also_where_one_text_gives_all() -> None:
+    """A ball in a cone: all outputs are the same work. It was an IndexError where a load has a corner."""
+    run = tr.Scenario.loads('run = { method = "auto", duration = 0.1, every = 0.1 }' + GRIPS_AND_SLIPS)
+    system = replace(run.system(), loads=(tr.QuadraticDrag(0.01),))
+    law = CreepingLaw(step=1e-6, since=-1.0, near=(0.0, 0.0, 1.0))
+    start = SlippingLaw().pack(system, system.place((0.0416348, -0.0283524)))[:10]
+    whole = python_law(system, law, (0.0,) * (law.event_parameters + 1))
+    bare = python_law(system, law)
+    for name in ("rates", "event_functions", "found", "corners"):
+        assert getattr(bare, name)(0.0, [*start, 0.01]) == getattr(whole, name)(0.0, [*start, 0.01])
+    assert len(bare.event_functions(0.0, [*start, 0.01])) == len(bare.names)
 
 
 def test_a_law_on_a_table_has_no_machine_code_and_stays_as_it_is() -> None:

@@ -117,6 +117,7 @@ def python_law(
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *event_parameters]
     flat = _known(system, law, tuple(own))
+    values += [0.0] * (flat.values - len(values))  # of which rates do not lean on those of event functions
     traced = PythonLaw(
         lambda t, y: flat.rates([t, *y, *values]),
         lambda t, y: flat.event_functions([t, *y, *values]),
@@ -155,6 +156,7 @@ class _Flat:
     found: _Function
     corners: _Function
     filling: Callable[[], tuple[Any, Any]]
+    values: int  # numbers after the state
     operations: int
     all_operations: int
     compiling: Callable[[], tuple[_Function, ...]]
@@ -218,8 +220,8 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
         parts = rates, values
         return _functions(partial(machine_code, tape), tape, *parts) if has_machine_code(tape, *parts) else ()
 
-    whole = len(tape.needed([*rates, *values]))
-    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)), whole, compiling)
+    work = len(tape.needed(rates)), len(tape.needed([*rates, *values]))
+    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(parameters), *work, compiling)
 
 
 def _functions(
