@@ -81,6 +81,7 @@ class Dense:
         self.bends = kinks_and_jolts(system, start.time, end)
         self.up_to_wall = UpToWall(self._sampled, system, start.time, end, tolerance)
         self.legs: list[Leg] = []
+        self.steps = 0  # about how many they took
         self.ends: list[float] = []  # of the legs, s
         self.follows: dict[int, PhaseStart | None] = {}
 
@@ -97,11 +98,6 @@ class Dense:
     def like_it(self, start: State, times: Array) -> Samples:
         """Return the samples of a run from another start, with what this one has found worth compiling with care."""
         return phases.solve(self.beside(), self.system, start, times, self.tolerance)
-
-    @property
-    def steps(self) -> int:
-        """About how many steps it took."""
-        return sum(leg.steps for leg in self.legs)
 
     @property
     def work(self) -> float:
@@ -124,6 +120,7 @@ class Dense:
         if self.passed == len(self.legs):
             leg = self._leg(system, now, times, tolerance, progress)
             self.legs.append(leg)
+            self.steps += leg.steps
             self.ends.append(self._end_after(now) if leg.stop is None else leg.stop.time)
         leg, self.passed = self.legs[self.passed], self.passed + 1
         stop = leg.stop if times.size and leg.stop is not None and leg.stop.time <= times[-1] else None
