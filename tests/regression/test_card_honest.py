@@ -1196,3 +1196,30 @@ def test_a_body_without_weight_comes_off_within_rounding_of_what_sets_its_suppor
     pulled = replace(run.samples, contact_force=run.samples.contact_force - 1e-11 * run.samples.normals(run.system))
     card = verify.card(run.system, run.start, pulled, Method.of("taylor"))
     assert not card["normal force"].passed
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_a_body_that_falls_along_a_wall_may_come_off_where_all_but_nothing_presses_it_on(method: str) -> None:
+    """It falls at 17 m/s, and N goes through zero by less than a nanonewton in a millisecond."""
+    text = f"""
+    loads = [{{ kind = "drag", coefficient = 0.00332103 }}]
+    run = {{ duration = 2.0, every = 0.0138995, method = "{method}" }}
+    [body]
+    kind = "disc"
+    radius = 0.0346872
+    density = 302.653
+    thickness = 0.0788359
+    moments = [4.757e-05, 3.70052e-05, 2.58622e-05]
+    [support]
+    kind = "cylinder"
+    radius = 0.156657
+    friction = 0.130745
+    motion = {{ kind = "uneven-spin", rate = 0.0, variation = 0.0468105, variation_rate = 3.71103 }}
+    [start]
+    position = [0.0492966, 0.0]
+    spin = -0.364578
+    orientation = [0.681346, -0.183789, -0.269423, -0.762199]
+    """
+    run = tr.Scenario.loads(text).run()
+    assert [event.kind for event in run.events] == ["lift"]
+    assert run.card().passed, str(run.card())

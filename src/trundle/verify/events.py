@@ -251,7 +251,9 @@ class AtEvents:
         N, f = (np.asarray(part)[0] for part in normal_and_friction(self.system, at))
         force = max(self._sizes["contact_force"], 1e-300)
         if event.kind == "lift":
-            yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound + changing["force"]
+            fast = float(self.system.body.mass) * float(np.linalg.norm(at.velocity[0])) ** 2 / self._arm
+            share = self._pulled(phase, float(N), f) / max(force, fast)  # of what holds a body that fast on a path
+            yield event, "N = 0", share, _GOES_ON * self.bound + changing["force"]
         elif phase == SLIPPING:
             what, share, allowed = self._slipped(event, at, each)
             yield event, what, share, allowed + changing["velocity"] + changing["angular_velocity"]
