@@ -422,3 +422,30 @@ def test_each_run_of_many_from_one_instant_has_patience_of_its_own() -> None:
     assert again.owed == 0
     first.after(1000, 9.0)
     assert shared.patience(9.0, 10.0) is again
+
+
+def test_a_contact_that_chatters_is_refused_after_a_thousand_events() -> None:
+    """A couple that acts while they touch throws a ball off a wall, and without it that comes back."""
+    text = """
+    loads = [{ kind = "force", value = ["-0.018865*t*exp(-t)", -1.09577, 0.247336] },
+             { kind = "rolling-couple", coefficient = 0.00523655 }]
+    body = { kind = "solid-sphere", radius = 0.0566788, density = 778.979 }
+    start = { position = ["90 deg", -0.225559], attitude = ["90 deg", "90 deg", -0.0289094] }
+    run = { duration = 2.0, every = 0.05 }
+    [support]
+    kind = "cylinder"
+    radius = 0.149252
+    restitution = 0.37455
+    motion = { kind = "precessing-tilt", angle = -0.0155381, rate = 7.89709 }
+    """
+    with pytest.raises(tr.SolverError, match=r"chatters at t = 0\.9.*1000 events \(lift, land\)"):
+        tr.Scenario.loads(text).run()
+
+
+def test_what_bounces_a_thousand_times_between_two_walls_does_not_chatter() -> None:
+    pipe = tr.Support(tr.Cylinder(0.5), friction=0.3, restitution=1.0)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.45, 1.0), pipe, gravity=0.0)
+    run = tr.simulate(system, system.place((0.0, 0.0), (0.0, 0.0, 30.0)), duration=3.8, every=0.1, method="taylor")
+    assert len(run.events) == 1140  # 0.1 m apart
+    assert {event.kind for event in run.events} == {"land"}
+    assert run.events[-1].time == pytest.approx(3.8, abs=1e-10)

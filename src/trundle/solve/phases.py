@@ -32,7 +32,8 @@ _MOST_EVENTS = 10_000
 # Stops that are no events, as where slip has turned by a right angle: a minute or two, and some seconds.
 _PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 500, "name": "The run"}
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
-_MANY, _MANY_WITHIN = 50, 1e-3  # events, and the share of the time in which the motion changes: no bounces are so close
+# Events, and the share of the time in which the motion changes: no bounces are so close, nor for so long.
+_CHATTER = (50, 1e-3), (1000, 0.3)
 ENDS = {
     "rim": "ran off the rim ({rim:g} m from the axis)",
     "end": "came to {end}",
@@ -501,19 +502,26 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
             f"No phase goes on at t = {recent[-1].time:.9g} s ({kinds}): rigid contact has no answer there. Change the "
             "friction, or round the body off."
         )
-    many = events[-_MANY:]
-    if len(many) < _MANY or many[-1].after is None:
-        return
-    span, last = many[-1].time - many[0].time, many[-1].after
-    reach = math.dist(last.position, many[-1].contact or last.position)
-    if many[-1].contact and span * math.hypot(*last.velocity) >= _MANY_WITHIN * reach:
-        return  # as at nearly every event: then the time in which the motion changes need not be worked out
-    if span < _MANY_WITHIN * transitions.moment(system, last, many[-1].contact):
-        kinds = ", ".join(dict.fromkeys(event.kind for event in many))
-        raise SolverError(
-            f"The contact chatters at t = {many[-1].time:.9g} s: {_MANY} events ({kinds}) within {span:.2g} s. Does a "
-            "couple that acts while they touch throw the body off, and its absence let it come back?"
-        )
+    for count, share in _CHATTER:
+        if len(events) >= count and _within(system, events[-count:], share):
+            kinds = ", ".join(dict.fromkeys(event.kind for event in events[-count:]))
+            last, span = events[-1].time, events[-1].time - events[-count].time
+            raise SolverError(
+                f"The contact chatters at t = {last:.9g} s: {count} events ({kinds}) within {span:.2g} s. Does a couple "
+                "that acts while they touch throw the body off, and its absence let it come back?"
+            )
+
+
+def _within(system: RollingSystem, events: Sequence[Event], share: float) -> bool:
+    """Tell whether events come within a share of the time in which the motion changes."""
+    span, last = events[-1].time - events[0].time, events[-1].after
+    if last is None:
+        return False
+    contact = events[-1].contact
+    reach = math.dist(last.position, contact or last.position)
+    if contact and span * math.hypot(*last.velocity) >= share * reach:
+        return False  # as at nearly every event: then the time in which the motion changes need not be worked out
+    return bool(span < share * transitions.moment(system, last, contact))
 
 
 def cut(times: Array, end: float) -> tuple[Array, Array]:
