@@ -507,8 +507,8 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
             kinds = ", ".join(dict.fromkeys(event.kind for event in events[-count:]))
             last, span = events[-1].time, events[-1].time - events[-count].time
             raise SolverError(
-                f"The contact chatters at t = {last:.9g} s: {count} events ({kinds}) within {span:.2g} s. Does a couple "
-                "that acts while they touch throw the body off, and its absence let it come back?"
+                f"The contact chatters at t = {last:.9g} s: {count} events ({kinds}) within {span:.2g} s. Does a "
+                "couple that acts while they touch throw the body off, and its absence let it come back?"
             )
 
 
