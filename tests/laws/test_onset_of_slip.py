@@ -333,3 +333,50 @@ def test_machine_code_is_taken_after_so_many_steps_of_one_run(method: str, monke
         begun.clear()
     assert counts[0] == counts[3] == 0
     assert counts[1] == counts[2] > 10
+
+
+@pytest.mark.parametrize("force", [0.3, 0.03, 1e-3, 1e-6])
+@pytest.mark.parametrize("lifts", [0.2, 0.43, 0.5, 0.81])
+@pytest.mark.parametrize("lift", [0, 1])
+def test_friction_gives_way_before_a_body_lifts_off_in_one_step(force: float, lifts: float, lift: int) -> None:
+    """N falls through zero in a step, and (μN)² − f² is positive again behind it: it was below zero at no look."""
+
+    def stops(t: float, y: Any) -> Any:  # noqa: ARG001
+        N, still = lifts - t, 0.2 * (2 - t)
+        found = [0.25 * N * N - force**2, N, still]
+        return np.array(found if lift else [found[1], found[0], still])
+
+    path = runge_kutta._OneStep(0.0, 1.0, lambda t: np.array([t]))
+    found = runge_kutta._first_stop(path, stops)
+    assert found is not None
+    if 2 * force < lifts:
+        assert found == (pytest.approx(lifts - 2 * force, rel=1e-14), 1 - lift)
+    else:  # it gave way before this step
+        assert found == (pytest.approx(lifts, rel=1e-14), lift)
+
+
+def test_runge_kutta_finds_the_slip_before_a_lift() -> None:
+    """A ball rolls over the crest of a wave: friction gives way 90 µs before it comes off."""
+    text = """
+    body = { kind = "solid-sphere", radius = 0.0124319, mass = 0.0617134 }
+    loads = [{ kind = "drag", coefficient = 0.00142037 },
+             { kind = "force", value = [-0.116737, "0.0174263*(1 - exp(-t))", "0.0307089*sin(0.713206*t)"] }]
+    run = { duration = 1.5, every = 0.02, method = "runge-kutta" }
+    [support]
+    kind = "height-field"
+    formula = "0.0352762*sin(27.9903*y)*cos(3.67254*x) + 0.0706528*y**2"
+    friction = 0.34325
+    tangential_restitution = 0.0362293
+    motion = { kind = "spin", rate = 1.4503 }
+    [start]
+    position = [-0.162126, 0.0782844]
+    velocity = [-0.142948, -0.598411, -0.0207497]
+    spin = -1.26652
+    time = -0.815222
+    """
+    scenario = tr.Scenario.loads(text)
+    ours, theirs = scenario.run(), scenario.run("taylor")
+    assert [event.kind for event in ours.events] == [event.kind for event in theirs.events]
+    assert [event.kind for event in ours.events][-3:] == ["grip", "slip", "lift"]
+    assert ours.card().passed, str(ours.card())
+    assert ours.events[-2].time == pytest.approx(theirs.events[-2].time, abs=1e-10)

@@ -565,23 +565,42 @@ def _first_stop(
         return None
     falls, low = ((values[:-1] >= 0) & (values[1:] < 0)).any(axis=0), np.fmin.reduce(values) < LOW * np.ptp(values, 0)
     found: tuple[float, int] | None = None
+
+    def at(which: int, t: float) -> float:
+        value, aside = float(stops(t, path(t))[which]), 0.0
+        while math.isnan(value) and aside < _ASIDE:  # just on the corner of a load, where it has no direction
+            aside = max(4 * aside, 4 * float(np.spacing(t)))
+            value = float(stops(t + aside, path(t + aside))[which])
+        return value
+
     # Those that seem to come first are looked for first: of what comes later no more is asked.
     for which in sorted(np.flatnonzero(falls | low).tolist(), key=lambda which: _about(looks, values[:, which])):
-
-        def at(t: float, which: int = which) -> float:
-            value, aside = float(stops(t, path(t))[which]), 0.0
-            while math.isnan(value) and aside < _ASIDE:  # just on the corner of a load, where it has no direction
-                aside = max(4 * aside, 4 * float(np.spacing(t)))
-                value = float(stops(t + aside, path(t + aside))[which])
-            return value
-
         before = np.inf if found is None else found[0]
         if which in loose:
-            fall = _loose_fall(at, looks, values[:, which], before)
+            fall = _loose_fall(partial(at, which), looks, values[:, which], before)
         else:
-            fall = _fall(at, looks, values[:, which], before, nearest)
+            fall = _fall(partial(at, which), looks, values[:, which], before, nearest)
         if fall is not None:
             found = fall, which
+    return found if found is None else _first_of(found, at, stops(found[0], path(found[0])), looks, values, nearest)
+
+
+def _first_of(
+    found: tuple[float, int],
+    at: Callable[[int, float], float],
+    there: Array,
+    looks: Array,
+    values: Array,
+    nearest: float,
+) -> tuple[float, int]:
+    """Return a stop, or one that fell through zero before it and is below zero there, if it is at no look.
+
+    Friction gives way before a body lifts off; a look beyond that sees it hold again, for (μN)² grows on both sides.
+    """
+    before = np.flatnonzero(looks < found[0])
+    for which in np.flatnonzero((there < 0) & (values[before[-1:]] >= 0).all(axis=0)).tolist():
+        if which != found[1] and at(which, found[0]) < 0:
+            found = root(partial(at, which), looks[before[-1]], found[0], nearest), which
     return found
 
 
