@@ -14,7 +14,7 @@ from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, Samples
 from .acting import unturning
-from .bounds import Array, blur_of, largest, speed_of
+from .bounds import A_ROUNDING, SOLVER, Array, blur_of, largest, speed_of
 from .card import CardFigure, checked
 from .friction import holding
 
@@ -168,4 +168,5 @@ def balance(
     parts = {"friction": friction, "the support": support, "loads": loads, "impacts": struck}
     said = ", ".join(f"{name} {value:+.6g} J" for name, value in parts.items() if abs(value) > 1e-15 * size)
     note = f"energy {first:.6g} to {last:.6g} J; work of {said}" if said else f"energy stays at {first:.6g} J"
+    blur *= max(1.0, bound / SOLVER / A_ROUNDING)  # a step leaves no less of the orientation than its tolerance
     return checked("energy balance", abs(left) / size, bound + (unknown + blur) / size, note)
