@@ -355,6 +355,14 @@ def test_friction_gives_way_before_a_body_lifts_off_in_one_step(force: float, li
         assert found == (pytest.approx(lifts, rel=1e-14), lift)
 
 
+def test_what_falls_from_nothing_at_the_beginning_of_a_step_is_first_whatever_else_is_below_zero() -> None:
+    path = runge_kutta._OneStep(0.0, 1.0, lambda t: np.array([t]))
+    found = runge_kutta._first_stop(path, lambda t, _: np.array([-t, -1.0, 0.5 - t]))
+    assert found is not None
+    assert found[1] == 0
+    assert found[0] <= 1e-300
+
+
 def test_runge_kutta_finds_the_slip_before_a_lift() -> None:
     """A ball rolls over the crest of a wave: friction gives way 90 µs before it comes off."""
     text = """

@@ -597,10 +597,10 @@ def _first_of(
 
     Friction gives way before a body lifts off; a look beyond that sees it hold again, for (μN)² grows on both sides.
     """
-    before = np.flatnonzero(looks < found[0])
-    for which in np.flatnonzero((there < 0) & (values[before[-1:]] >= 0).all(axis=0)).tolist():
+    last = int(np.searchsorted(looks, found[0])) - 1  # of the looks before it
+    for which in np.flatnonzero((there < 0) & (values[last] >= 0)).tolist() if last >= 0 else ():
         if which != found[1] and at(which, found[0]) < 0:
-            found = root(partial(at, which), looks[before[-1]], found[0], nearest), which
+            found = root(partial(at, which), looks[last], found[0], nearest), which
     return found
 
 
