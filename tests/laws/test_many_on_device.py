@@ -113,3 +113,11 @@ def test_jax_keeps_its_precision_for_others() -> None:
     systems, starts = balls(tr.Plane(), 2)
     tr.simulate_many(systems, starts, 0.5, 0.5, device="cpu")
     assert jax.config.jax_enable_x64 == before
+
+
+def test_who_comes_to_a_second_wall_ends_there() -> None:
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 1.0), tr.Support(tr.HeightField("sqrt(x**2 + 1e-6)")))
+    runs = tr.simulate_many(system, [system.place((x, 0.0)) for x in (0.05, 0.3, -0.05)], 0.2, 0.01, device="cpu")
+    assert runs.ending.values.tolist() == ["wall", "", "wall"]
+    assert np.isnan(runs.error.values).tolist() == [True, False, True]
+    assert np.isnan(runs.position.values[0, -1]).all()

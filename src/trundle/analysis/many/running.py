@@ -329,6 +329,8 @@ def _through_walls(result: Runs, systems: Sequence[RollingSystem], left: set[int
         if not fits_anywhere(system):
             whose, samples = result.looks(members)
             found.update(whose[reach(system, samples) > slack(tolerance)].tolist())
+    if result.error is not None:
+        result.error[list(found)] = np.nan
     return found
 
 
