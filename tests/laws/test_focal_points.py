@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 import trundle as tr
 from trundle.mechanics.system import STANDARD_GRAVITY as G
+from trundle.solve import contact_state, focal
 
 pytest.importorskip("heyoka")
 
@@ -148,3 +149,44 @@ def test_a_disc_that_touches_where_the_bowl_is_as_round_ends_there_still(through
     start = system.place((0.104954, 0.0123729), velocity=(0.0676024, -0.0997183, 0.125977), height=0.0257207)
     run = tr.simulate(system, start, 2.0, 0.02)
     assert [event.kind for event in run.events] == ["land", "curved"]
+
+
+def test_where_no_point_is_nearest_again_few_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a ball in a narrow cone: each search takes ten milliseconds, and there were five hundred."""
+    text = """
+    run = { duration = 2.0, every = 0.02 }
+    [support]
+    kind = "cone"
+    half_angle = 0.0364117
+    rim = 0.769311
+    tilt = 0.0196795
+    motion = { kind = "precessing-tilt", angle = 0.0307107, rate = 0.0 }
+    [body]
+    kind = "hemisphere"
+    radius = 0.0696214
+    density = 7133.92
+    moments = [2.71943e-05, 2.92599e-05, 2.9794e-05]
+    centre = [-0.0198483, -0.0159255, 0.0]
+    [start]
+    position = [-0.259523, 0.0]
+    orientation = [-0.520199, 0.0316677, -0.526761, -0.0944973]
+    """
+    searches, past_it, contact_of = [0], focal.past_it, contact_state.contact_of
+    counts = list[int]()
+
+    def searched(*given: Any) -> Any:
+        searches[0] += 1
+        return contact_of(*given)
+
+    def counted(*given: Any) -> Any:
+        searches[0] = 0
+        found = past_it(*given)
+        counts.append(searches[0])
+        return found
+
+    monkeypatch.setattr(contact_state, "contact_of", searched)
+    monkeypatch.setattr(focal, "past_it", counted)
+    run = tr.Scenario.loads(text).run()
+    assert [event.kind for event in run.events] == ["lift", "curved"]
+    assert counts
+    assert max(counts) <= 10
