@@ -21,7 +21,7 @@ from .samples import Array
 from .transitions import PhaseStart, ZeroCrossing
 
 _STEP = 1e-3  # of the gap over the speed, and of the time in which the motion changes: rk4 is exact to the last digit
-ASIDE = 1e-15  # share of the body's size: so far beside a focal point there is a nearest point
+ASIDE = 1e-15  # share of a length at hand: so far beside a focal point there is a nearest point
 _MOST_STEPS = 512  # to where the nearest point is known again: half of the gap
 
 

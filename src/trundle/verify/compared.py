@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import OutOfDomainError, TurnsTooFastError
-from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem, State
 from ..solve.dense import Dense
 from ..solve.exact import ClosedForm
@@ -34,6 +32,7 @@ from .bounds import (
     turned_in,
 )
 from .card import CardFigure, checked
+from .each_sample import EachSample
 from .friction import normal_and_friction, slip_of
 from .growth import MOST, NEAR_THE_END, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 from .landings import landings_of
@@ -201,13 +200,11 @@ class Compared:
         which = np.flatnonzero((self.ours.phase == FLIGHT) & (self.theirs.phase == FLIGHT))
         found = np.zeros(self.ours.time.size)
         if which.size and "contact" in self.sizes:
-            ours = self.ours.part(which)
-            contact = contact_at(
-                self.system, ours.time, Vector.of(ours.contact), Quaternion.of(ours.orientation), ours.support_columns
-            )
-            gap = (Vector.of(ours.position) + contact.offset - contact.point).dot(contact.normal)
+            each = EachSample(self.system, self.ours.part(which), self.bound)
+            gap = (each.apart[0] * each.normals).sum(axis=1)
+            determinant = np.abs(each.touch.relative_curvature_determinant(gap))
             with np.errstate(divide="ignore"):
-                found[which] = self.bound * self.sizes["position"] / np.abs(contact.relative_curvature_determinant(gap))
+                found[which] = self.bound * self.sizes["position"] / determinant
         return found
 
     @cached_property

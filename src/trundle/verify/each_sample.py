@@ -97,7 +97,7 @@ class EachSample:
         return self.at.normals(self.system)
 
     @cached_property
-    def _touch(self) -> Contact:
+    def touch(self) -> Contact:
         """The geometry at each p."""
         at, q = self.at, Quaternion.of(self.at.orientation)
         return contact_at(self.system, at.time, Vector.of(at.contact), q, at.support_columns)
@@ -105,7 +105,7 @@ class EachSample:
     @cached_property
     def apart(self) -> tuple[Array, Array]:
         """From p to the point of the body whose normal is −n, m; and how high p is over the surface, m."""
-        at, contact = self.at, self._touch
+        at, contact = self.at, self.touch
         offset = np.broadcast_to(contact.offset.array(), at.position.shape)
         support, surface = contact.support, self.system.support.surface
         back = support.rotation.transpose
@@ -174,10 +174,10 @@ class EachSample:
         """
         along = apart - gap[:, None] * self.normals
         aside = np.linalg.norm(along, axis=1)
-        if not self.flies.any() or self._touch.flat:
+        if not self.flies.any() or self.touch.flat:
             return aside
         with np.errstate(all="ignore"):
-            moved = self._touch.relative_curvature(np.where(self.flies, gap, 0.0)).solve(Vector.of(along))
+            moved = self.touch.relative_curvature(np.where(self.flies, gap, 0.0)).solve(Vector.of(along))
             off = np.linalg.norm(np.broadcast_to(moved.array(), along.shape), axis=1)
         return np.where(self.flies, np.fmin(aside, off), aside)
 
@@ -192,7 +192,7 @@ class EachSample:
             yield Shares("inside the rim", np.broadcast_to(beyond, shape) / size, self.bound)
         nu = Quaternion.of(self.at.orientation).matrix().transpose @ Vector.of(self.normals)
         # Where the support bends, what p may be off turns the normal, and so moves the point of the body that is next.
-        bend = sum(row.dot(row) for row in self._touch.shape_operator.rows) ** 0.5
+        bend = sum(row.dot(row) for row in self.touch.shape_operator.rows) ** 0.5
         for name, inside, sharp in (
             ("before the end", surface.domain_margin(there), 1.0),
             ("on its shape", system.body.shape.validity_margin(-nu), 1 + bend * size),
