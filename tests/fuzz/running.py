@@ -301,7 +301,9 @@ def _warm_up() -> None:
 def outcomes(
     cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT, commands: tuple[str, ...] = ()
 ) -> Iterator[Outcome]:
-    """Try out seeds of classes, some at a time.
+    """Try out seeds of classes, some at a time, and by itself again what was late beside others.
+
+    Processes that share a processor's caches take more of its time: only alone is it the program's.
 
     Parameters
     ----------
@@ -319,9 +321,22 @@ def outcomes(
     Yields
     ------
     Outcome
-        In the order in which they end.
+        In the order in which they end, those that were late last.
     """
     _warm_up()
+    late: list[tuple[str, int]] = []
+    for one in _side_by_side(cases, folder, workers, limit, commands):
+        if one.outcome == HANG and workers > 1:
+            late.append((one.name, one.seed))
+        else:
+            yield one
+    yield from _side_by_side(iter(late), folder, 1, limit, commands)
+
+
+def _side_by_side(
+    cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float, commands: tuple[str, ...]
+) -> Iterator[Outcome]:
+    """Try out seeds of classes, so many at a time."""
     running: dict[int, tuple[str, int, Child, int]] = {}
     free = list(range(workers))
     waiting = iter(cases)

@@ -213,6 +213,40 @@ def test_endings_are_told_apart(tmp_path: Path) -> None:
     assert "# things look odd" in found["warns"]["warned"]
 
 
+BESIDE_OTHERS = """
+import json, pathlib, sys
+from tests.fuzz import running
+
+folder = pathlib.Path(sys.argv[1])
+running._warm_up = lambda: None
+
+def try_out(name, seed, say, limit, commands):
+    tries = folder / f"{seed}"
+    with tries.open("a") as stream:
+        stream.write(".")
+    late = name == "slow" or (name == "disturbed" and tries.read_text() == ".")
+    say(outcome="hang" if late else "passed")
+
+running.try_out = try_out
+cases = [("slow", 0), ("disturbed", 1), ("quick", 2)]
+found = list(running.outcomes(iter(cases), folder / "files", int(sys.argv[2])))
+tries = {path.name: len(path.read_text()) for path in folder.iterdir() if path.is_file()}
+print(json.dumps([[(one.name, one.outcome) for one in found], tries]))
+"""
+
+
+def test_what_is_late_beside_others_is_tried_alone(tmp_path: Path) -> None:
+    for workers, tries in (2, {"0": 2, "1": 2, "2": 1}), (1, {"0": 1, "1": 1, "2": 1}):
+        folder = tmp_path / f"{workers}"
+        folder.mkdir()
+        done = command("-c", BESIDE_OTHERS, str(folder), f"{workers}")
+        assert done.returncode == 0, done.stderr
+        found, tried = json.loads(done.stdout)
+        assert tried == tries
+        alone = "passed" if workers == 2 else "hang"
+        assert sorted(found) == [["disturbed", alone], ["quick", "passed"], ["slow", "hang"]]
+
+
 SCENARIO = """
 [body]
 kind = "solid-sphere"
