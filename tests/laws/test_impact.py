@@ -158,3 +158,45 @@ def test_a_body_that_is_easy_to_turn_keeps_no_speed_off_the_support(friction: fl
         turned = struck.angular_velocity_change.cross(contact.offset)
         after = (s + struck.velocity_change + turned).z
         assert 1.3 * abs(after) <= 1e-12 * struck.impulse.norm(), seed
+
+
+LIGHT = """
+start = {{ position = [-0.104, 0.2095], attitude = [0.3, 1.2, 0.01], height = 0.0075 }}
+run = {{ duration = 0.2, every = 0.01 }}
+[body]
+kind = "ellipsoid"
+semi_axes = [0.16, 0.12, 0.06]
+mass = 20
+moments = [{}, {}, {}]
+centre = [-0.01, 0.006, -0.009]
+[support]
+kind = "cone"
+half_angle = "45 deg"
+{}
+"""
+
+
+@pytest.mark.parametrize("inertia", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize(("friction", "restitution"), [(0.5, 0.0), (0.5, 0.5), (None, 0.5)])
+def test_one_impulse_sets_down_a_heavy_body_of_hardly_any_inertia(
+    inertia: float, friction: float | None, restitution: float
+) -> None:
+    # Its impulse is a light one, of which V = Ω×ρ with a rounding of Ω would take a share of m|ρ|²/J times that.
+    moments = np.array([1.1, 1.5, 1.2]) * inertia
+    loose = "" if friction is None else f"friction = {friction}"
+    run = tr.Scenario.loads(LIGHT.format(*moments, f"{loose}\nrestitution = {restitution}")).run()
+    assert run.card().passed
+    landings = [event for event in run.events if event.kind in ("land", "settle")]
+    assert landings
+    for event in landings:
+        before, after = event.before, event.after
+        assert before is not None
+        assert after is not None
+        assert event.contact is not None
+        rho = np.subtract(event.contact, before.position)
+        axes = np.array([row.array() for row in Quaternion(*before.orientation).matrix().rows])
+        turned = axes @ np.diag(moments) @ axes.T @ np.subtract(after.angular_velocity, before.angular_velocity)
+        P = 20.0 * np.subtract(after.velocity, before.velocity)
+        sharp = 2e-13 * np.linalg.norm(P) + EXACT(16, 20.0 * np.linalg.norm([before.velocity, after.velocity]))
+        if event.kind == "land":  # else V loses what is left of the bounces, too
+            assert np.linalg.norm(turned - np.cross(rho, P)) <= np.linalg.norm(rho) * sharp

@@ -310,7 +310,8 @@ class Landing:
         """Yield how far V and Ω after it are from what the impulse of its course makes of them."""
         (V, Omega), (found, turned) = self.expected, _speeds(self.after)
         m, arm = float(self.system.body.mass), float(np.linalg.norm(self.rho))
-        bound = 10 * self.sharp
+        # A light impulse turns a body of hardly any inertia: M P = Δs says as little of P as rounding leaves.
+        bound = 10 * self.sharp + _ROUNDING * float(np.linalg.cond(self.course.M))
         yield "V after it", m * float(np.linalg.norm(found - V)) / self.size, bound
         moment = float(np.linalg.norm(self.J @ (turned - Omega))) / (arm * self.size)
         spun = _ROUNDING * float(np.linalg.norm(self.J @ Omega)) / (arm * self.size)

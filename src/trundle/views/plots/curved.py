@@ -46,10 +46,11 @@ class CurvedDrawing(Drawing):
         self.centre, self.contact = (np.asarray(self.own[name].values, float) for name in ("position", "contact"))
         touched = self.contact[~self.flying] if not self.flying.all() else self.contact
         self.window = window_of(self.surface, touched, facts.radius)
-        # A flight that goes far is followed only as far as the surface can still be seen.
+        # A flight that does not come back is followed only as far as the surface can still be seen.
+        leaves = part_in(facts.stretches[-1:], FLIGHT, self.time)
         room = 0.6 * float(np.max(self.window.high - self.window.low))
         near = np.all((self.centre >= self.window.low - room) & (self.centre <= self.window.high + room), axis=1)
-        self.shown = np.where((near | ~self.flying)[:, None], self.centre, np.nan)
+        self.shown = np.where((near | ~leaves)[:, None], self.centre, np.nan)
 
     def sheet(self) -> Sheet:
         """Draw it: two columns, two rows, the legend in the place that is left."""
