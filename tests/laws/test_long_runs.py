@@ -288,7 +288,10 @@ def test_short_steps_where_slip_begins_are_no_reason_to_compile_anything() -> No
     assert effort.level == taylor.WITH_CARE  # seven thousand for all of a second
     effort.after(50_000, 1e-3)
     effort.look(left=1.0)
-    assert effort.level == taylor.UNROLLED  # as many again for each of the milliseconds to come
+    assert effort.level == taylor.WITH_CARE  # as many again for each of the milliseconds to come are refused
+    effort.after(50_000, 4e-2)
+    effort.look(left=1.0)
+    assert effort.level == taylor.UNROLLED  # a million
 
 
 @pytest.mark.parametrize(
@@ -389,9 +392,11 @@ def test_a_ball_that_slides_in_a_bowl_for_long_is_a_spherical_pendulum(
     run = sliding(speed, friction, 300.0, "taylor")
     heights = run.data.position.values[:, 2] - BOWL
     assert (run.data.phase.values == 1).all()
-    np.testing.assert_allclose(heights, pendulum(run), rtol=0, atol=1e-12 * max(1.0, abs(speed)))
     z, V = run.data.position.values[:, 2], run.data.velocity.values
-    assert drift([0.5 * (V * V).sum(axis=1), G * z]) < 3e-14  # 1e-10 where s keeps what rounding leaves along n
+    off = drift([0.5 * (V * V).sum(axis=1), G * z])
+    assert off < 3e-14  # 1e-10 where s keeps what rounding leaves along n
+    swings = 300.0 * max(abs(speed) / BOWL, math.sqrt(G / BOWL))  # rad; energy off by a share is a phase off by half
+    np.testing.assert_allclose(heights, pendulum(run), rtol=0, atol=0.5 * off * swings * BOWL)
     assert run.card().passed
 
 

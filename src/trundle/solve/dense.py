@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
-from . import phases
+from . import phases, transitions
 from .phases import Follows, Integrate, Segment, cut
 from .samples import Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
@@ -135,7 +135,7 @@ class Dense:
         kept = self.keep(system, now, end, tolerance, left) if left > 0 else None
         if isinstance(kept, Leg):
             return kept
-        first = now if kept is None else _gone_on(system, now, kept.time, kept.state_vector)
+        first = now if kept is None else transitions.later(system, now, kept.time, kept.state_vector)
         instants = np.linspace(first.time, end, 2 + _MARKS // (1 + len(self.legs)))
         instants = np.union1d(times[times > first.time], instants)
         parts = list(self.beside()(system, first, instants, tolerance, progress))
@@ -205,10 +205,4 @@ class _Marks:
 
     def _from(self, mark: int) -> PhaseStart:
         """Return the law as it goes on from an instant."""
-        return _gone_on(self.system, self.begin, float(self.times[mark]), self.known[mark])
-
-
-def _gone_on(system: RollingSystem, now: PhaseStart, time: float, numbers: Array) -> PhaseStart:
-    """Return the same law as it goes on from a later instant."""
-    at = now.law.unpack(system, time, numbers)
-    return replace(now, start=at.state, state_vector=numbers.tolist(), events=(), across=None)
+        return transitions.later(self.system, self.begin, float(self.times[mark]), self.known[mark])

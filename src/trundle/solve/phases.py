@@ -30,7 +30,7 @@ from .transitions import JOLT, PhaseStart, ZeroCrossing
 
 _MOST_EVENTS = 10_000
 # Stops that are no events, as where slip has turned by a right angle: a minute or two, and some seconds.
-_PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 500, "name": "The run"}
+PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 500, "name": "The run"}
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
 # Events, and the share of the time in which the motion changes: no bounces are so close, nor for so long.
 _CHATTER = (50, 1e-3), (1000, 0.3)
@@ -189,7 +189,7 @@ def course(
     events: list[Event] = []
     passed: list[float] = []  # corners
     left = times
-    patience = Patience(start.time, float(times[-1]) if times.size else start.time, **_PATIENCE)
+    patience = Patience(start.time, float(times[-1]) if times.size else start.time, **PATIENCE)
 
     def behind(now: PhaseStart) -> PhaseStart:
         return _behind_it(system, begin(system, now), bends)
@@ -268,8 +268,7 @@ def _between_kinks(
         yield Segment(rest, np.broadcast_to(there, (rest.size, there.size)), stop)
         if stop is not None:
             return
-        at = now.law.unpack(system, kink.behind, there)
-        now = replace(now, start=at.state, state_vector=there.tolist(), events=(), across=None)
+        now = transitions.later(system, now, kink.behind, there)
     yield from integrate(system, now, times, tolerance, progress)
 
 

@@ -16,7 +16,7 @@ from ..errors import SolverError
 from ..mechanics.parameters import numbers
 from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
-from . import corners, phases, runge_kutta
+from . import corners, phases, runge_kutta, transitions
 from .charts import CHART, LAWS_OWN, Chart
 from .dense import Keep, Leg, TooMany
 from .integrators import IN_HASTE, TOLERANCE, UNROLLED, WITH_CARE, borrowed, ready
@@ -114,13 +114,13 @@ def integrate(
                         continue
                     stop = run.stop(reached)
                     kept, _ = cut(chunk, stop.time)
-                    goes_on = _in_another_chart(system, now, stop)
+                    goes_on = _in_another_chart(system, run.now, stop)
                     yield Segment(kept, states[: kept.size], stop if goes_on is None else None)
                     _, times = cut(times, stop.time)
             except SolverError:  # at an instant at which the law is singular, which its steps came to by a rounding
-                if not _ends_singular(system, now, run):
+                if not _ends_singular(system, run.now, run):
                     raise
-                yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+                yield from runge_kutta.integrate(system, run.now, times, runge_kutta.FINEST, progress)
 
 
 def before_series(now: PhaseStart, *, late: bool = False) -> PhaseStart:
@@ -132,8 +132,7 @@ def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing
     """Return how the same law goes on where a chart ends; None at any other stop."""
     if stop.name != CHART:
         return None
-    at = stop.at(system, now.law)
-    return replace(now, start=at.state, state_vector=stop.state_vector.tolist(), events=(), across=None)
+    return transitions.later(system, now, stop.time, stop.state_vector)
 
 
 @dataclass
@@ -183,7 +182,7 @@ class _Effort:
         careful = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost
         worth = _WORTH_UNROLLING[0] + _WORTH_UNROLLING[1] * self.cost**2
         shortening = self.pace * self.gone > _SHORTENING * self.steps
-        if min(coming, most) > worth and self.steps > _DONE * worth and not shortening:
+        if most >= coming > worth and self.steps > _DONE * worth and not shortening:
             self.level = UNROLLED
         elif self.level == IN_HASTE:
             seen = not growing and careful < coming <= min(most, self.steps / _DONE)
@@ -198,12 +197,14 @@ class Shared:
     efforts: dict[str, _Effort] = field(default_factory=dict)  # for each law
     end: float = math.inf  # of the run, s
     brief: runge_kutta.Taken = field(default_factory=runge_kutta.Taken)  # what it has come through of brief laws
+    passes: Patience = field(init=False)  # with slip that is at its slowest and goes on
     _patience: Patience | None = None
 
     def patience(self, begin: float, end: float) -> Patience:
         """Return what refuses to go on for too long, over all of the run; of another one where the time goes back."""
         if self._patience is None or self._patience.time - begin > _BACK * (end - begin):
             self._patience, self.end = Patience(begin, end, **_PATIENCE), end
+            self.passes = Patience(begin, end, **phases.PATIENCE)
         return self._patience
 
     def effort(self, key: str, cost: int, tolerance: float) -> _Effort:
@@ -256,19 +257,19 @@ def dense(
         if isinstance(leg, Leg) and leg.stop is not None:
             goes_on = _in_another_chart(system, now, leg.stop)
             ends += [leg.stop.time] if goes_on is not None else []
+    return _joined(legs, ends) if ends else leg
+
+
+def _joined(legs: list[Leg | TooMany], ends: list[float]) -> Leg | TooMany:
+    """Return legs of one law as one, the last of them: they are in different charts, or by another method at last."""
     steps, work = sum(each.steps for each in legs), sum(each.work for each in legs)
     begins = np.concatenate([each.begins for each in legs])
-    return leg if not ends else replace(leg, states=_joined(legs, ends), steps=steps, work=work, begins=begins)
-
-
-def _joined(legs: list[Leg | TooMany], ends: list[float]) -> Callable[[Array], Array]:
-    """Return the states of legs in different charts as of one."""
 
     def states(times: Array) -> Array:
         parts = np.split(times, np.searchsorted(times, ends))
         return np.vstack([leg.states(part) for leg, part in zip(legs, parts, strict=True)])
 
-    return states
+    return replace(legs[-1], states=states, steps=steps, work=work, begins=begins)
 
 
 def _dense_in_chart(
@@ -288,9 +289,13 @@ def _dense_in_chart(
             try:
                 reached = run.go_to(until - run.reference)
             except SolverError:
-                if not _ends_singular(system, now, run):
+                if not _ends_singular(system, run.now, run):
                     raise
-                return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
+                onward = runge_kutta.dense(system, run.now, end, runge_kutta.FINEST, most)
+                if run.now is now:
+                    return onward
+                before = Leg(states, None, kept.steps, run.work(kept.steps), kept.when[kept.when < run.now.time])
+                return _joined([before, onward], [run.now.time])
             if reached is not None:
                 stop = run.stop(reached)
             elif kept.steps > most and until < end:
@@ -310,9 +315,9 @@ def _begun(system: RollingSystem, now: PhaseStart, end: float, tolerance: float,
         def borrow(level: int) -> Any:
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
-        given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
-        run = _Run(borrow, shared.effort(key, lowered.cost, tolerance), system, lowered, given, now)
-        run.patience, run.end, run.lasted = shared.patience(now.time, end), shared.end, lasted(system, now)
+        run = _Run(borrow, shared.effort(key, lowered.cost, tolerance), system, lowered, now)
+        run.patience, run.passes = shared.patience(now.time, end), shared.passes
+        run.end, run.lasted = shared.end, lasted(system, now)
         run.after_brief, shared.brief.handed_on = shared.brief if shared.brief.handed_on else None, False
         yield run
 
@@ -350,15 +355,16 @@ class _Run:
         effort: _Effort,
         system: RollingSystem,
         lowered: Lowered,
-        given: Sequence[float],
         now: PhaseStart,
     ) -> None:
-        self.borrow, self.lowered, self.given, self.system, self.now = borrow, lowered, given, system, now
+        self.borrow, self.lowered, self.system, self.now = borrow, lowered, system, now
+        self.corners = corners.directions(system, now)
         self.to_law = partial(to_law, lowered.chart, system)
         self.effort, self.level = effort, effort.level
         self.effort.pause = _FIRST_LOOK
         self.integrator = borrow(self.level)
         self.patience: Patience
+        self.passes: Patience
         self.after_brief: runge_kutta.Taken | None = None  # where it goes on with what a brief law has begun
         self.progress: Progress | None = None
         self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
@@ -398,31 +404,37 @@ class _Run:
             if self.kept is not None:
                 given |= {"write_tc": True, "callback": self.kept.take}
             outcome, _, _, steps, *_ = self.integrator.propagate_until(until, **given)
-            if (missed := self._missed(outcome)) is not None:
-                return missed
-            if not self._is_cut(outcome, steps):
-                return _event(self, outcome)
+            more, reached = self._after(outcome, steps)
+            if not more:
+                return reached
 
-    def go_through(self, since: Array) -> tuple[Array, int | None]:
-        """Return the states at times since the reference, the first of them now, and the terminal event if one came."""
+    def go_through(self, since: Array) -> Iterator[tuple[Array, int | None]]:
+        """Yield the states at times since the reference, the first of them now, and the terminal event if one came.
+
+        They come in parts, each up to where slip or turning was at its slowest: from there on a stretch may begin.
+        """
         parts: list[Array] = []
         done = 0
         while True:
             ahead = np.concatenate([[self.integrator.time], since[done:]]) if done else since
-            given = self._at_once()
+            given, before = self._at_once(), self.now
             outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, **given)
             found = found.reshape(-1, self.integrator.state.size)[bool(done) :]
             parts.append(found)
             done += len(found)
-            if (missed := self._missed(outcome)) is not None:
-                return np.vstack(parts), missed
-            if not self._is_cut(outcome, steps):
-                return np.vstack(parts), _event(self, outcome)
+            more, reached = self._after(outcome, steps)
+            if not more:
+                yield np.vstack(parts), reached
+                return
             while done < since.size and since[done] <= self.integrator.time:  # a rounding before a step's end
                 parts.append(self.integrator.state[None].copy())
                 done += 1
             if done == since.size:
-                return np.vstack(parts), None
+                yield np.vstack(parts), None
+                return
+            if self.now is not before:
+                yield np.vstack(parts), None
+                parts = []
 
     def _at_once(self) -> dict[str, Any]:
         """Return how many steps to make before anything else is looked at, and how long they may be.
@@ -440,6 +452,33 @@ class _Run:
         if longest > GROWN * self.lasted:
             self.lasted = longest = math.inf
         return {"max_steps": most if longest == math.inf else min(most, _YOUNG), "max_delta_t": longest}
+
+    def _after(self, outcome: Any, steps: int) -> tuple[bool, int | None]:
+        """Tell whether there is more to do after so many steps, and if not, which terminal event ended it, if one."""
+        reached = self._missed(outcome)
+        if reached is None and self._is_cut(outcome, steps):
+            return True, None
+        if reached is None:
+            reached = _event(self, outcome)
+        passed = reached is not None and self._passed(reached)
+        return passed, None if passed else reached
+
+    def _passed(self, reached: int) -> bool:
+        """Go on where slip or turning was only at its slowest, and tell whether it was.
+
+        Whoever follows derivatives is to be told of each stop.
+        """
+        stop = self.stop(reached)
+        if self.now.law.variational or stop.name.removeprefix("near ") not in self.now.law.ends:
+            return False
+        same = transitions.going_on(self.system, self.now.law, stop)
+        if same is None or corners.beyond(self.system, same) is not same:
+            return False
+        self.passes.after(1, stop.time)
+        self.now, self.begun, self.lasted = same, same.time, math.inf
+        self._give()
+        self.integrator.reset_cooldowns()
+        return True
 
     def _missed(self, outcome: Any) -> int | None:
         """Return the end of slip or turning that was passed over, from where on its steps get shorter without end.
@@ -496,7 +535,12 @@ class _Run:
         self.reference, self.integrator.time = time, 0.0
         if self.kept is not None:
             self.kept.refer_to(time)
-        self.values = self.lowered.values(self.given, time)
+        self._give()
+
+    def _give(self) -> None:
+        """Tell the integrator its numbers."""
+        given = [*numbers(self.system), *self.now.event_parameters, *self.corners]
+        self.values = self.lowered.values(given, self.reference)
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
@@ -524,12 +568,13 @@ def _propagate(run: _Run, times: Array) -> Iterator[tuple[Array, Array, int | No
         since, which = chunk - run.reference, np.arange(chunk.size)
         if (since[1:] <= since[:-1]).any():  # two instants may be one: what is left of a difference is rounded
             since, which = np.unique(since, return_inverse=True)
-        states, ended = run.go_through(since)
-        which = which[which < len(states)]
-        chunk_reached = chunk[: which.size]
-        yield chunk_reached, run.to_law(chunk_reached, states[which]), ended
-        if ended is not None:
-            return
+        done = 0
+        for states, ended in run.go_through(since):
+            here = slice(*np.searchsorted(which, (done, done + len(states))))
+            yield chunk[here], run.to_law(chunk[here], states[which[here] - done]), ended
+            if ended is not None:
+                return
+            done += len(states)
         if run.progress is not None:
             run.progress(float(chunk[-1]))
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..errors import SolverError
-from ..mechanics.algebra import ZERO, Vector
+from ..mechanics.algebra import ZERO, Matrix, Vector
 from ..mechanics.contact import roll
 from ..mechanics.duals import value_of
 from ..mechanics.impact import land
@@ -112,10 +112,8 @@ def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
         if lift is not None:
             advanced = law.rk4_step(system, stop.time, stop.state_vector.tolist(), lift - stop.time)
             return _lifted(system, law.unpack(system, lift, advanced))
-    goes_on = name in ("grip", "stop") and _goes_on(system, law, at, stop)
-    if goes_on or name.startswith(CORNER) or (name == "jam" and not _jams(system, law, at, stop)):
-        event_parameters = (*_floor(system, law, at), *_extras(system, law, at, stop.state_vector))
-        return PhaseStart(law, at.state, list(stop.state_vector), event_parameters)
+    if (same := going_on(system, law, stop)) is not None:
+        return same
     if name == JOLT:
         return _jolted(system, law, at, stop)
     if name == "land":
@@ -142,6 +140,30 @@ def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     return replace(follows, events=(*(_event(kind, text, at) for kind, text in said), *follows.events))
 
 
+def going_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart | None:
+    """Return the same phase behind a stop that ends nothing; None where it ends something."""
+    name = stop.name.removeprefix("near ")
+    if not (name in ("grip", "stop", "jam") or name.startswith(CORNER)):
+        return None
+    at = stop.at(system, law)
+    if (name in ("grip", "stop") and not _goes_on(system, law, at, stop)) or (
+        name == "jam" and _jams(system, law, at, stop)
+    ):
+        return None
+    return _same(system, law, at, stop.state_vector)
+
+
+def later(system: RollingSystem, now: PhaseStart, time: float, numbers: Array) -> PhaseStart:
+    """Return the same phase as it goes on from a later instant."""
+    return _same(system, now.law, now.law.unpack(system, time, numbers), numbers)
+
+
+def _same(system: RollingSystem, law: Law, at: ContactState, numbers: Array) -> PhaseStart:
+    """Return a phase that goes on where a body is: its slip or turning may have another direction by now."""
+    event_parameters = (*_floor(system, law, at), *_extras(system, law, at, numbers))
+    return PhaseStart(law, at.state, numbers.tolist(), event_parameters)
+
+
 def jolted(system: RollingSystem, law: Law, kink: Kink, numbers: Array) -> ContactState:
     """Return a body as it moves before the velocity of the support jumps, on the support as it is after.
 
@@ -160,8 +182,7 @@ def _jolted(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossin
     limit = SLIP_TOLERANCE * at.speed
     jump = (at.slip - law.unpack(system, stop.time, stop.state_vector).slip).norm()
     if jump <= limit and isinstance(law, SlippingLaw) and not law.held:
-        event_parameters = (*_floor(system, law, at), *_extras(system, law, at, stop.state_vector))
-        return PhaseStart(law, at.state, list(stop.state_vector), event_parameters)
+        return _same(system, law, at, stop.state_vector)
     if at.approach < -limit:
         return _struck(system, at, f"the support struck the body at {-at.approach:.4g} m/s")
     if at.approach > limit:
@@ -270,7 +291,8 @@ def _extras(system: RollingSystem, law: Law, at: ContactState, numbers: Any = No
     found: list[float] = []
     for name in law.ends:
         v = law.shrinking(system, at.state.time, law.state_vector(at) if numbers is None else numbers, name)
-        found += [_least(system, at, name) ** 2, *floats(v / v.norm())]
+        length = v.norm()
+        found += [_least(system, at, name) ** 2, *floats(v if length == 0 else v / length)]
     return tuple(found)
 
 
@@ -390,8 +412,20 @@ def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: Con
 def _set_down(system: RollingSystem, at: ContactState) -> ContactState:
     """Return a body that touches and stays: no velocity off the support, and none along it where that is rounding."""
     limit = SLIP_TOLERANCE * at.speed
-    held = bool(at.sliding.norm() <= limit and system.support.friction != 0)
-    return at.moving(system, at.contact.rolling_velocity(at.Omega) + (ZERO if held else at.sliding), at.Omega)
+    if at.sliding.norm() > limit or system.support.friction == 0:
+        return at.moving(system, at.contact.rolling_velocity(at.Omega) + at.sliding, at.Omega)
+    Omega = _held_fast(system, at, at.slip if abs(at.approach) <= limit else at.sliding)
+    return at.moving(system, at.contact.rolling_velocity(Omega), Omega)
+
+
+def _held_fast(system: RollingSystem, at: ContactState, left: Vector) -> Vector:
+    """Return Ω after an impulse at the contact that takes away what rounding has left of the slip.
+
+    Taken from V alone it would be much beside a light impulse, where a body of hardly any inertia turns.
+    """
+    rho, m = at.contact.offset, system.body.mass
+    about = (Matrix.identity() * rho.dot(rho) - Matrix.outer(rho, rho)) * m
+    return at.Omega - (system.body.inertia_in_space(at.orientation.matrix()) + about).solve(rho.cross(left) * m)
 
 
 def _come_to_it(system: RollingSystem, law: Law, at: ContactState, numbers: Any, stop: str) -> ContactState:

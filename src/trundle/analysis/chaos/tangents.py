@@ -156,8 +156,7 @@ class TangentRun(VariationalRun):
                 self._take(now.law, begin, until, np.vstack(self.kept)[:-1], tolerance)
             self.here = law, until, self._renormalised(law, until, state)
             values = [float(value_of(one)) for one in state]
-            at = now.law.unpack(system, until, values)
-            now = replace(now, start=at.state, state_vector=values, events=(), across=None)
+            now = transitions.later(system, now, until, np.array(values))
             if progress is not None:
                 progress(until)
 
