@@ -68,6 +68,43 @@ def test_no_other_place_is_nearer(surface, body):
         assert (alone.point - Vector.of(contact.point.array()[i])).norm() < 1e-12
 
 
+WAVES = {
+    "0.0544055*sin(3.68431*y)*cos(9.07652*y)": lambda _, y: 0.0544055 * np.sin(3.68431 * y) * np.cos(9.07652 * y),
+    "0.03*sin(7*x)*cos(11*y)": lambda x, y: 0.03 * np.sin(7 * x) * np.cos(11 * y),
+    "0.06*sin(5*x + 3*y)": lambda x, y: 0.06 * np.sin(5 * x + 3 * y),
+    "0.02*(cos(9*x) + sin(12*y)) + 0.2*x*x": lambda x, y: 0.02 * (np.cos(9 * x) + np.sin(12 * y)) + 0.2 * x * x,
+}
+
+
+def distance_on_grids(height, centre):
+    """Return how far a point is from a surface, by ever finer grids."""
+    middle, reach = centre[:2], centre[2] + 0.2
+    for _ in range(5):
+        x, y = (np.linspace(at - reach, at + reach, 700) for at in middle)
+        x, y = np.meshgrid(x, y)
+        far = np.hypot(np.hypot(x - centre[0], y - centre[1]), height(x, y) - centre[2])
+        i = np.argmin(far)
+        middle, reach = (x.flat[i], y.flat[i]), reach / 40
+    return far.flat[i]
+
+
+@pytest.mark.parametrize("formula", WAVES)
+def test_from_high_over_waves_one_of_the_nearest_is_found(formula):
+    # A crest right under the body is a nearest point of its own, and one beside it nearer.
+    random = np.random.default_rng(7)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.01, 1.0), tr.Support(tr.HeightField(formula)))
+    centre = np.column_stack([random.uniform(-0.5, 0.5, (20, 2)), 10 ** random.uniform(-0.7, 0.7, 20)])
+    still = np.tile([1.0, 0.0, 0.0, 0.0], (20, 1))
+    contacts = closest_contacts(system, np.zeros(20), centre, still).point.array()
+    least = np.array([distance_on_grids(WAVES[formula], one) for one in centre])
+    found = np.linalg.norm(centre - contacts, axis=1)
+    assert found.min() > 0.1
+    assert (found <= 1.01 * least).all()
+    assert (found <= (1 + 1e-9) * least).sum() >= 19
+    alone = closest_contact(system, 0.0, Vector(*centre[0]), Quaternion(1.0, 0.0, 0.0, 0.0)).point
+    np.testing.assert_allclose(tuple(alone), contacts[0], rtol=0, atol=1e-9)
+
+
 def test_one_of_many_that_is_nowhere_nearest_is_named():
     side = np.linspace(-0.2, 0.2, 7)
     ended = tr.HeightField.through(side, side, np.add.outer(side**2, side**2))

@@ -21,15 +21,17 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_MOST_STEPS = 60  # of Newton's method, which needs five
+_MOST_STEPS, _MOST_NEAR = 60, 20  # of Newton's method, which needs five: from afar, and from near by
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _NEXT_TO = 1e-7  # share of these by which a known point may be off
 _ROUNDING = 1e-15
 _SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
-_LOOKS, _GUESSES = 600, 6  # for a better first guess, and how many of them are followed
+_LOOKS, _GUESSES = 300, 6  # for a better first guess, and how many of them are followed
+_CLOSELY, _CLOSER_GUESSES = 0.93, 5  # cosine of the angle about the nearest one up to which one looks again
 _STRIDES, _ROUGHLY = 12, 0.01  # of a look, and share of the lengths at hand to which it must then be there
-_ALIKE = 0.9  # cosine of the angle between the normals of two that lead to the same
-_AT_ONCE = 64  # bodies, of which one search takes 600 looks each
+# Cosine of the angle between the normals of two that lead to the same, and where one looks closely
+_ALIKE, _CLOSELY_ALIKE = 0.9, 0.999
+_AT_ONCE = 64  # bodies, of which one search takes twice 300 looks each
 
 
 def nearest(
@@ -102,7 +104,7 @@ def closest_contact(
         return _with_slopes(*given)
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, coordinates)
-    if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
+    if found is None or misplaced(system, found, centre, orientation) or _unsure(system, found, centre):
         import numpy as np
 
         known = np.full((1, 3), np.nan) if found is None else np.array([tuple(found.point)])
@@ -132,7 +134,7 @@ def closest_contacts(system: RollingSystem, time: Array, centre: Array, orientat
     r, q = Vector.of(centre), Quaternion.of(orientation)
     with np.errstate(all="ignore"):  # outside a formula
         contact, left = followed(system, time, r, r, q, ())
-        wrong = _not(left <= _CLOSE) | _hollow_under(contact, r)
+        wrong = _not(left <= _CLOSE) | _unsure(system, contact, r)
         for mask, _ in _misplacements(system, contact, r, q):
             wrong = wrong | mask
     points, unsure = contact.point.array(), np.flatnonzero(np.broadcast_to(wrong, time.shape))
@@ -284,7 +286,7 @@ def followed(
     last: Scalar = math.inf
     arrived: Any = False
     contact = contact_at(system, time, point, orientation, coordinates)
-    for step in range(_MOST_STEPS):
+    for step in range(_MOST_NEAR if near else _MOST_STEPS):
         off, aside, down = beside(system, contact, centre, bent=near or step > 0)
         left = (off.norm() + down.norm()) / (point.norm() + contact.offset.norm())
         moved = aside + down
@@ -304,12 +306,12 @@ def _gap(contact: Contact, centre: Vector) -> Scalar:
     return (centre + contact.offset - contact.point).dot(contact.normal)
 
 
-def _hollow_under(contact: Contact, centre: Vector) -> Any:
-    """Tell whether a body is over a support that bends up somehow, of which other points may be nearer."""
-    S = contact.shape_operator
-    (xx, xy, xz), (_, yy, yz), (_, _, zz) = S.rows
-    bends_up = (xx + yy + zz < 0) | (xx * yy + yy * zz + zz * xx < xy * xy + yz * yz + xz * xz)
-    return bends_up & (_gap(contact, centre) > _CLOSE * contact.offset.norm())
+def _unsure(system: RollingSystem, contact: Contact, centre: Vector) -> Any:
+    """Tell whether other points may be nearer to a body in flight: not if it is outside something convex."""
+    free = system.support.surface.free_radius
+    if free is not None and math.isinf(free):
+        return False
+    return _gap(contact, centre) > _CLOSE * contact.offset.norm()
 
 
 def _searched(
@@ -330,7 +332,7 @@ def _searched(
         return np.repeat(array, times, axis=0)
 
     with np.errstate(all="ignore"):  # outside a formula
-        likely = _likely(system, each(time, _LOOKS), each(centre, _LOOKS), each(orientation, _LOOKS), coordinates)
+        likely = _likely(system, time, centre, orientation, coordinates)
         first = np.concatenate([known[:, None], likely], axis=1)
         count = first.shape[1]
         r, q = Vector.of(each(centre, count)), Quaternion.of(each(orientation, count))
@@ -349,23 +351,70 @@ def _searched(
 def _likely(
     system: RollingSystem, time: Array, centre: Array, orientation: Array, coordinates: tuple[Scalar, ...]
 ) -> Array:
-    """Return points (n, 6, 3) of the support that are not far straight away from a body, each another way."""
+    """Return points (n, 11, 3) of the support that are not far straight away from a body, each another way.
+
+    One looks all around, and then more closely about the way on which it is nearest: from high over waves one sees few
+    of them.
+    """
     import numpy as np
 
-    i = np.arange(_LOOKS)
-    z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
-    across = np.sqrt(1.0 - z * z)
-    ways = np.column_stack([across * np.cos(angle), across * np.sin(angle), z])
-    support, n = system.support.motion.at(time, *coordinates), Vector.of(np.tile(ways, (time.size // _LOOKS, 1)))
+    given = system, time, centre, orientation, coordinates
+    around = np.broadcast_to(_lattice(_LOOKS, -1.0), (time.size, _LOOKS, 3))
+    points, far = _seen(*given, around)
+    closely = _about(around[np.arange(time.size), np.argmin(far, axis=1)], _lattice(_LOOKS, _CLOSELY))
+    first = _first(_GUESSES, around, points, far, _ALIKE)
+    return np.concatenate([first, _first(_CLOSER_GUESSES, closely, *_seen(*given, closely), _CLOSELY_ALIKE)], axis=1)
+
+
+def _seen(
+    system: RollingSystem,
+    time: Array,
+    centre: Array,
+    orientation: Array,
+    coordinates: tuple[Scalar, ...],
+    ways: Array,
+) -> tuple[Array, Array]:
+    """Return the points (n, looks, 3) seen from each body on its ways, the normals there, and how far they are."""
+    import numpy as np
+
+    looks, n = ways.shape[1], Vector.of(ways.reshape(-1, 3))
+    time, centre, orientation = (np.repeat(array, looks, axis=0) for array in (time, centre, orientation))
+    support = system.support.motion.at(time, *coordinates)
     rho = system.body.shape.contact(Quaternion.of(orientation).matrix(), support.rotation @ n)[0]
     reached, far = _reached(system.support.surface, support.local(Vector.of(centre) + rho), n, rho.norm())
-    points, far = support.carried(reached).array().reshape(-1, _LOOKS, 3), far.reshape(-1, _LOOKS)
+    return support.carried(reached).array().reshape(ways.shape), far.reshape(ways.shape[:2])
+
+
+def _first(count: int, ways: Array, points: Array, far: Array, alike: float) -> Array:
+    """Return the first of the points seen (n, count, 3), by how far they are, of ways that are not alike."""
+    import numpy as np
+
     rows, kept = np.arange(far.shape[0]), []
-    for _ in range(_GUESSES):
+    for _ in range(count):
         best = np.argmin(far, axis=1)
         kept.append(np.where(np.isfinite(far[rows, best])[:, None], points[rows, best], np.nan))
-        far = np.where(ways[best] @ ways.T >= _ALIKE, np.inf, far)
+        far = np.where(np.einsum("ni,nki->nk", ways[rows, best], ways) >= alike, np.inf, far)
     return np.stack(kept, axis=1)
+
+
+def _lattice(count: int, least: float) -> Array:
+    """Return so many ways (count, 3), spread evenly over those whose z is `least` at least: Fibonacci's lattice."""
+    import numpy as np
+
+    i = np.arange(count) + 0.5
+    z, angle = 1.0 - (1.0 - least) * i / count, math.pi * (1.0 + math.sqrt(5.0)) * i
+    across = np.sqrt(1.0 - z * z)
+    return np.column_stack([across * np.cos(angle), across * np.sin(angle), z])
+
+
+def _about(way: Array, ways: Array) -> Array:
+    """Return ways (n, count, 3) that lie about each of some (n, 3) as given ones lie about z."""
+    import numpy as np
+
+    first = np.cross(way, np.eye(3)[np.argmin(np.abs(way), axis=1)])
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    axes = np.stack([first, np.cross(way, first), way], axis=1)
+    return np.einsum("kj,nji->nki", ways, axes)
 
 
 def _reached(surface: Surface, there: Vector, n: Vector, size: Scalar) -> tuple[Vector, Array]:
