@@ -141,8 +141,8 @@ PHASES = (
     Mutant(
         "set down without its slip",
         FOLLOWING,
-        "(ZERO if held else at.sliding), at.Omega)",
-        "ZERO, at.Omega)",
+        "rolling_velocity(at.Omega) + at.sliding, at.Omega)",
+        "rolling_velocity(at.Omega), at.Omega)",
         "ball_lands_on_ice",
     ),
     Mutant("bounces cut at a thousandth of the body", FOLLOWING, "SETTLED = 1e-6", "SETTLED = 1e-3", "ball_bounces"),
