@@ -305,7 +305,10 @@ def test_short_steps_where_slip_begins_are_no_reason_to_compile_anything() -> No
 )
 def test_a_law_is_compiled_with_care_only_for_as_many_steps_as_it_seems_to_hold(look: Any, level: int) -> None:
     effort = taylor._Effort(cost=700)
-    effort.after(100, 1e-2)
+    effort.after(1000, 0.1)
+    effort.look(1.0, **look)
+    assert effort.level == taylor.IN_HASTE  # of ten thousand too few are done to tell
+    effort.after(3000, 0.3)
     effort.look(1.0, **look)
     assert effort.level == level
 

@@ -84,7 +84,7 @@ def test_a_second_process_does_not_compile(machine: Machine) -> None:
 @pytest.mark.parametrize(
     ("patched", "levels"),
     [
-        ({}, [integrators.IN_HASTE]),
+        ({"_WORTH_CARE": (1e5, 0.0)}, [integrators.IN_HASTE]),
         ({"_WORTH_CARE": (100.0, 0.0)}, [integrators.IN_HASTE, integrators.WITH_CARE]),
         ({"_WORTH_CARE": (1e5, 0.0), "_FIRST_LOOK": 20}, [integrators.IN_HASTE]),
         ({"_WORTH_UNROLLING": (0.0, 0.0)}, [integrators.IN_HASTE, integrators.UNROLLED]),
@@ -132,7 +132,7 @@ def test_slip_and_grip_by_turns_count_the_steps_of_both() -> None:
     while effort.level == integrators.IN_HASTE and effort.steps < 20_000:
         effort.after(70, 1e-3)
         effort.look(0.01)  # a few hundred steps to come
-    assert 6_000 <= effort.steps < 6_000 + 140  # as many as are worth care at once
+    assert 6_875 <= effort.steps < 6_875 + 140  # as many as are worth care at once
 
 
 def test_no_law_is_unrolled_for_steps_that_patience_would_not_see() -> None:
