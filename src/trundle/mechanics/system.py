@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from ..display import Displayed, Markup, number, numbers, pairs
 from ..errors import InvalidValueError
@@ -24,6 +24,7 @@ from .surfaces import Surface
 if TYPE_CHECKING:
     from ..fields import VectorField
 
+T = TypeVar("T")
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition (3rd CGPM, 1901)
 
 
@@ -203,6 +204,22 @@ class RollingSystem:
     def _known(self) -> dict[Any, Any]:
         """What others have found out of it, by who they are: as it is frozen, that stays so."""
         return {}
+
+    def once(self, find: Callable[[RollingSystem], T]) -> T:
+        """Return what a function finds out of it, which is asked only once.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> from trundle.mechanics.parameters import numbers
+        >>> ball = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+        >>> ball.once(numbers) is ball.once(numbers)
+        True
+        """
+        if find not in self._known:
+            self._known[find] = find(self)
+        found: T = self._known[find]
+        return found
 
     def __getstate__(self) -> dict[str, Any]:
         """Return its parts; a copy finds out again what follows from them."""

@@ -37,7 +37,7 @@ def directions(system: RollingSystem, now: PhaseStart) -> tuple[float, ...]:
     if not system.corners:
         return ()
     found: list[float] = []
-    for w, ahead, further in zip(*_here_and_ahead(system, now, 2), strict=True):
+    for w, ahead, further in zip(*_here_and_ahead(system, now), strict=True):
         way = ahead if _is_on(w, ahead) else w
         length = float(np.linalg.norm(way))
         change, bend = (float(np.linalg.norm(part)) for part in (ahead - w, further - 2 * ahead + w))
@@ -52,10 +52,10 @@ def beyond(system: RollingSystem, now: PhaseStart) -> PhaseStart:
     if not system.corners:
         return now
     try:
-        here, later = _here_and_ahead(system, now)
+        here, later, _ = _here_and_ahead(system, now)
     except ArithmeticError:  # just on it, where the load has no direction
         now = _aside(system, now)
-        here, later = _here_and_ahead(system, now)
+        here, later, _ = _here_and_ahead(system, now)
     on = [later[i] for i, w in enumerate(here) if _is_on(w, later[i])]
     if not any(w.any() for w in on):
         return now
@@ -92,14 +92,24 @@ def check_count(system: RollingSystem, times: Sequence[float], now: PhaseStart) 
     )
 
 
-def _here_and_ahead(system: RollingSystem, now: PhaseStart, looks: int = 1) -> list[list[Array]]:
-    """Return what passes through zero at the corners, and the same a little later, and so on."""
-    law, numbers, wait = python_law(system, now.law), list(map(float, now.state_vector)), _AHEAD * _moment(system, now)
-    found = [_vectors(law, now.time, numbers)]
-    for look in range(1, looks + 1):
-        later = now.law.rk4_step(system, now.time, numbers, look * wait, law.rates)
-        found.append(_vectors(law, now.time + look * wait, later))
-    return found
+def _here_and_ahead(system: RollingSystem, now: PhaseStart) -> list[list[Array]]:
+    """Return what passes through zero at the corners, and the same a little later, and later still.
+
+    A system keeps that of the last phase that was asked about: where it begins, and for its event functions.
+    """
+    known: tuple[PhaseStart, list[list[Array]]] | None = system._known.get(_here_and_ahead)
+    if known is None or known[0] is not now:
+        law, numbers, wait = (
+            python_law(system, now.law),
+            list(map(float, now.state_vector)),
+            _AHEAD * _moment(system, now),
+        )
+        found = [_vectors(law, now.time, numbers)]
+        for look in (1, 2):
+            later = now.law.rk4_step(system, now.time, numbers, look * wait, law.rates)
+            found.append(_vectors(law, now.time + look * wait, later))
+        system._known[_here_and_ahead] = known = now, found
+    return known[1]
 
 
 def _vectors(law: PythonLaw, time: float, numbers: Sequence[float]) -> list[Array]:

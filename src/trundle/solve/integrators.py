@@ -84,7 +84,7 @@ def ready(
         Which of the system's numbers are 0 for good; absent: those that are.
     """
     if zeros is None:
-        zeros = frozenset(i for i, value in enumerate(numbers(system)) if value == 0)
+        zeros = frozenset(i for i, value in enumerate(system.once(numbers)) if value == 0)
     among = (LAWS_OWN,) if state is None else charts(system, law)
     known = ready_in(system, law, tolerance, zeros, among)
     return next(each for each in known if state is None or each[0].chart.contains(state))
@@ -95,7 +95,7 @@ def ready_in(
 ) -> list[tuple[Lowered, str]]:
     """Return a law in each of some charts, those of fewest operations first, with the name of what comes of it."""
     memory = _memory().ready
-    structure: Any = (structure_of(system), law.identity, tolerance, zeros, among)
+    structure: Any = (system.once(structure_of), law.identity, tolerance, zeros, among)
     try:
         known = memory.get(structure)
     except TypeError:  # a part of one's own that cannot be hashed, and so may change

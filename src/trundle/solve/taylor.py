@@ -543,7 +543,7 @@ class _Run:
 
     def _give(self) -> None:
         """Tell the integrator its numbers."""
-        given = [*numbers(self.system), *self.now.event_parameters, *self.corners]
+        given = [*self.system.once(numbers), *self.now.event_parameters, *self.corners]
         self.values = self.lowered.values(given, self.reference)
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 

@@ -112,10 +112,10 @@ def python_law(
     >>> law.rates(0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])[0], law.names
     (2.0, ('lift',))
     """
-    if not system.support.surface.recordable or has_duals((system, *vars(law).values(), *state)):
+    if not system.support.surface.recordable or system.once(has_duals) or has_duals((*vars(law).values(), *state)):
         return _untraced(system, law, event_parameters, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
-    values = [*numbers(system), *own.values(), *event_parameters]
+    values = [*system.once(numbers), *own.values(), *event_parameters]
     flat = _known(system, law, tuple(own))
     values += [0.0] * (flat.values - len(values))  # of which rates do not lean on those of event functions
     traced = PythonLaw(
@@ -181,7 +181,7 @@ def _memory() -> OrderedDict[Any, _Flat]:
 def _known(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     """Return a law traced, once for each structure of a system."""
     memory, kept = _memory(), tuple((name, value) for name, value in vars(law).items() if name not in own)
-    structure = (structure_of(system), type(law), kept)
+    structure = (system.once(structure_of), type(law), kept)
     try:
         hash(structure)
     except TypeError:  # a part of one's own that cannot be hashed, and so may change
