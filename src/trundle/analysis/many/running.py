@@ -301,21 +301,35 @@ def _together(
         result.error[rolling] = errors
         result.error[stopped] = np.nan
         left -= set(rolling).difference(stopped)
-    if not taylor.available():
-        return sorted(left | _through_walls(result, systems, left, tolerance))
-    begins: dict[int, State | PhaseStart] = {
-        i: PhaseStart(RollingLaw(), starts[i], states[i].tolist()) for i in rolling if i in left
-    }
-    for i in left.intersection(sound).difference(begins):
+    if taylor.available():
+        rolls = {i: PhaseStart(RollingLaw(), starts[i], states[i].tolist()) for i in rolling if i in left}
+        left -= _by_heyoka(result, systems, starts, times, rolls, left.intersection(sound), workers, unrolled)
+    return sorted(left | _through_walls(result, systems, left, tolerance))
+
+
+def _by_heyoka(
+    result: Runs,
+    systems: Sequence[RollingSystem],
+    starts: Sequence[State],
+    times: Any,
+    rolls: dict[int, PhaseStart],
+    which: set[int],
+    workers: int | None,
+    unrolled: bool,
+) -> set[int]:
+    """Run members many at a time, of which some are known to roll, and return those that are done."""
+    from ...solve import ensemble
+
+    begins: dict[int, State | PhaseStart] = {**rolls}
+    for i in which.difference(rolls):
         if _passes(check_start, systems[i], starts[i], float(times[-1])):
             begins[i] = starts[i]
     if not begins:
-        return sorted(left | _through_walls(result, systems, left, tolerance))
+        return set()
     count = min(workers or ensemble.cores(), -(-len(begins) // ensemble.LANES))
     _, events = ensemble.integrate(systems, begins, times, result.put, workers=count, unrolled=unrolled)
     result.put_events(events)
-    left = left.difference(events)
-    return sorted(left | _through_walls(result, systems, left, tolerance))
+    return set(events)
 
 
 def _through_walls(result: Runs, systems: Sequence[RollingSystem], left: set[int], tolerance: float) -> set[int]:
