@@ -325,7 +325,7 @@ class Compared:
     def _delayed(self, times: Array) -> Array:
         """Return how many times larger an error of the place in flight shows at given times."""
         landed, then, after = self._delays.T
-        past = np.concatenate([[0.0], np.maximum.accumulate(after)])[np.searchsorted(landed, times)]
+        past = np.concatenate([[0.0], np.maximum.accumulate(after)])[np.searchsorted(landed, times, side="right")]
         return np.max([past, *(late * (times == at) for at, late in zip(landed, then, strict=True))], axis=0)
 
     def _undecided(self, grown: Growth) -> float:

@@ -212,7 +212,7 @@ class Landing:
     @cached_property
     def impulse(self) -> Array:
         """The impulse that the change of V shows, N s."""
-        lost = self.off * self.n if self.stays else 0.0
+        lost = self.off * self.n if self.cut else 0.0
         return float(self.system.body.mass) * (_speeds(self.after)[0] - _speeds(self.before)[0] + lost)
 
     @cached_property

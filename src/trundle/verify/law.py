@@ -270,6 +270,7 @@ class _Windows:
         a_size = self._acceleration(F, V_rate)
         lever = m * a_size * largest(rho) / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
         turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * self.rate, lever, self._sharp_turn)
+        turn_size += m * self._pressed * largest(rho) / np.linalg.eigvalsh(J).min()
         return float(
             max(
                 np.abs(solved[0] - V_rate).max() / a_size,
@@ -303,16 +304,18 @@ class _Windows:
         size = max(np.abs(F).max() / m, np.abs(V_rate).max())
         arm = largest(at.contact - at.position)
         blurred = self._blurred * max(size / arm, _SLOPE * turning / self.half)
-        pressed = A_ROUNDING * self._leverage * largest(at.contact_force) / m / self.bound
-        return float(max(size, V * self.rate, 1e-300) + sharp + blurred + pressed)
+        return float(max(size, V * self.rate, 1e-300) + sharp + blurred + self._pressed)
 
     @cached_property
-    def _leverage(self) -> float:
-        """How many times as fast as what moves it the contact moves: of N, so many times rounding is left.
+    def _pressed(self) -> float:
+        """What rounding of N makes of an acceleration, over the bound, m/s².
 
-        What rests does not move it, nor does rounding of its place.
+        So many times as fast as what moves it the contact moves, so many roundings of N there are. What rests does not
+        move it, nor does rounding of its place.
         """
-        return self._passing / max(sum(map(largest, self._speeds)), self._sharp * self.bound)
+        leverage = self._passing / max(sum(map(largest, self._speeds)), self._sharp * self.bound)
+        force = largest(self.middle.contact_force)
+        return A_ROUNDING * leverage * force / float(self.system.body.mass) / self.bound
 
     @cached_property
     def _blurred(self) -> float:
