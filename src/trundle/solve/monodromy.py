@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from operator import mul
 from typing import Any
 
@@ -17,6 +18,7 @@ Array = NDArray[np.float64]
 _DIGITS = 40  # a million turns lose six of them
 _BITS = 140
 _TERMS = 60
+_KEPT = 16  # motions: a run's card asks again
 _HALF_TURN_A_STEP = 6.0  # rad of half the angle: the series of order 60 leaves 6^60/60! < 1e-35 of it
 
 
@@ -47,6 +49,7 @@ class Monodromy:
         return np.concatenate([np.cos(angle)[None], self.axis[:, None] * np.sin(angle)])
 
     @staticmethod
+    @lru_cache(_KEPT)
     def of_turning_vector(constant: Any, turning: Any, along: Any, rate: Any) -> Monodromy:
         """Work out the rotation over one period of Ω_x + iΩ_y = C + D e^{iκt}, Ω_z constant.
 
@@ -67,6 +70,8 @@ class Monodromy:
             steps = 16 + int(mpmath.ceil(half_angle / _HALF_TURN_A_STEP))  # 16: e^{iκt} has a short series too
             unit, h = mpmath.mpf(2) ** _BITS, period / steps
             growth = [(mpmath.mpc(0, rate * h)) ** n / mpmath.factorial(n) for n in range(_TERMS)]
+            # In a step of a fast spinner e^{iκt} hardly changes: of what is less than a unit nothing is left.
+            growth = [growth[0], *(factor for factor in growth[1:] if abs(D * factor * h) * unit >= 1)]
             a, c = (int(unit), 0), (0, 0)
             for j in range(steps):
                 turning = D * mpmath.expj(2 * mpmath.pi * mpmath.sign(rate) * j / steps)
@@ -96,7 +101,7 @@ def _step(W: list[tuple[int, int]], spin: int, a: tuple[int, int], c: tuple[int,
     W_re, W_im = [w[0] for w in W], [w[1] for w in W]
     a_re, a_im, c_re, c_im = [a[0]], [a[1]], [c[0]], [c[1]]
     for n in range(_TERMS):
-        back = slice(n, None, -1)
+        back = slice(n, n - len(W) if n >= len(W) else None, -1)
         aw = [(sumprod(W_re, p), sumprod(W_im, p)) for p in (a_re[back], a_im[back])]
         cw = [(sumprod(W_re, p), sumprod(W_im, p)) for p in (c_re[back], c_im[back])]
         scale = 2 * (n + 1) << _BITS
