@@ -190,3 +190,29 @@ def test_where_no_point_is_nearest_again_few_are_looked_for(monkeypatch: pytest.
     assert [event.kind for event in run.events] == ["lift", "curved"]
     assert counts
     assert max(counts) <= 10
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_no_flight_goes_on_over_what_lies_beyond_the_rim(method: str) -> None:
+    """Past the focal point of a dish the nearest point would be where the dish has ended."""
+    run = tr.Scenario.loads("""
+run = { duration = 2.0, every = 0.00543881 }
+[body]
+kind = "ellipsoid"
+semi_axes = [0.0224594, 0.158547, 0.0765165]
+mass = 0.022957
+moments = [1.3092e-05, 1.38492e-05, 2.61917e-05]
+turn = "-90 deg"
+[support]
+kind = "paraboloid"
+radius = 0.273181
+rim = 0.283512
+friction = 0.024994
+motion = { kind = "spin", rate = -3.3672 }
+[start]
+position = [-0.00420703, 0.0125676]
+velocity = [-0.0599773, -1.3438]
+orientation = [-0.21109, 0.587692, 0.0, -0.205405]
+""").run(method)
+    assert (np.hypot(*run.in_frame("support").data.contact.values[:, :2].T) < 0.283512).all()
+    assert run.card().passed

@@ -327,6 +327,21 @@ def test_what_rounding_does_near_an_end_adds_up(kind: str) -> None:
     assert not replace(run, data=run.data.assign(velocity=velocity), _kept={}).card().passed
 
 
+@pytest.mark.parametrize("spin", [0.0140901, -0.140901, 1.40901])
+@pytest.mark.parametrize("x", [0.0165628, 0.05])
+def test_what_resistance_holds_as_soon_as_it_turns_is_still_beside_what_drives_it(x: float, spin: float) -> None:
+    """Its forces let it turn at 27 rad/s; beside the 0.1 rad/s at which it spins a still body turned too fast."""
+    run = passes(
+        loads=[{"kind": "rolling-resistance", "offset": 0.0016286 * x / 0.0165628}],
+        gravity=30.0,
+        body={"kind": "sphere-with-moment", "radius": 0.0396598, "mass": 0.0733678, "moment_of_inertia": 4.8273e-05},
+        support={"kind": "dome", "radius": 1.38167, "friction": 0.518007},
+        start={"position": [0.0, -x], "spin": spin},
+        run={"duration": 0.1, "every": 0.01},
+    )
+    assert [event.kind for event in run.events] == ["spot"]
+
+
 @pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("share", [0.999, 1.002, 1.006, 1.008])
 def test_a_rounding_of_the_normal_force_turns_a_ring_about_its_easiest_axis(share: float) -> None:

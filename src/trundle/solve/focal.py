@@ -31,7 +31,7 @@ def is_focal(law: Law, stop: ZeroCrossing) -> bool:
 
 
 def past_it(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart | None:
-    """Return how a flight goes on past a focal point; None where it comes to touch, or no point is nearest."""
+    """Return how a flight goes on past a focal point; None where it comes to touch, or no point in reach is nearest."""
     step, state, time = _step(system, law, stop), list(stop.state_vector), stop.time
     with suppress(ArithmeticError, ValueError, SolverError):
         for count in range(1, _MOST_STEPS + 1):
@@ -42,8 +42,9 @@ def past_it(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart |
             if value_of(at.gap) <= 0:
                 return None
             follows = PhaseStart.of(law, at)
-            if value_of(law.event_functions(system, time, follows.state_vector, ())["curved"]) > 0:
-                return follows
+            left = law.event_functions(system, time, follows.state_vector, ())
+            if value_of(left["curved"]) > 0:  # beyond a rim there is nothing to come down on
+                return follows if all(value_of(one) > 0 for one in left.values()) else None
     return None
 
 

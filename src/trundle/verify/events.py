@@ -263,12 +263,8 @@ class AtEvents:
             allowed = _SLACK + _GOES_ON * self.bound + changing["force"]
             yield event, "|f| = μN", self._short_of_slipping(float(N), f) / force, allowed
         elif event.kind == "stop":
-            yield (
-                event,
-                "it no longer turns",
-                self._turning(at, each) / self._sizes["angular_velocity"],
-                _GOES_ON * self.bound + changing["angular_velocity"],
-            )
+            allowed = _GOES_ON * self.bound + changing["angular_velocity"]
+            yield event, "it no longer turns", self._turning(at, each), allowed
 
     def _borne(self, kink: Kink, at: Samples) -> float:
         """Return how much more a body that goes on behind a kink as before it could push or rub, as a share."""
@@ -299,17 +295,17 @@ class AtEvents:
         return bool(np.linalg.norm(jump) + np.linalg.norm(turned) * self._arm > self.bound * self._speed)
 
     def _turning(self, at: Samples, each: EachSample) -> float:
-        """Return how fast a body turns over the support, rad/s."""
+        """Return how fast a body turns over the support, as a share of how fast it does, or its forces let it."""
         relative = at.angular_velocity[0] - _row(at.support(self.system).angular_velocity)
-        return float(np.linalg.norm(relative - (relative @ each.normals[0]) * each.normals[0]))
+        over = float(np.linalg.norm(relative - (relative @ each.normals[0]) * each.normals[0]))
+        return over / max(self._sizes["angular_velocity"], self._speed / self._arm)
 
     def _slipped(self, event: Event, at: Samples, each: EachSample) -> tuple[str, float, float]:
         """Return what ended a way of slipping: the slip, or against resistance the turning, or its being held."""
         if "began to turn" in event.text:
             return "the resistance is overcome", self._short_of_turning(at), _SLACK
         if "stopped turning" in event.text:
-            share = self._turning(at, each) / self._sizes["angular_velocity"]
-            return "it no longer turns", share, _GOES_ON * self.bound
+            return "it no longer turns", self._turning(at, each), _GOES_ON * self.bound
         return "s = 0", float(np.linalg.norm(each.slip[0])) / self._speed, _GOES_ON * self.bound
 
     def _short_of_turning(self, at: Samples) -> float:
@@ -349,12 +345,7 @@ class AtEvents:
             below = float(reach(self.system, at)[0])  # over a rim it may be deeper at once
             yield event, "another part touches, and not before", below if touches else np.inf, allowed
         elif event.kind == "spot":
-            yield (
-                event,
-                "it no longer turns",
-                self._turning(at, each) / self._sizes["angular_velocity"],
-                _GOES_ON * self.bound,
-            )
+            yield event, "it no longer turns", self._turning(at, each), _GOES_ON * self.bound
 
     def _left(self, event: Event, at: Samples) -> float:
         """Return how much is left of what ends a run."""
