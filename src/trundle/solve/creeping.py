@@ -29,6 +29,9 @@ _LEFT_OUT = 1e-11
 # method of series goes on: a step of this one takes as long as some sixty of its, of seven such times each. Where
 # series have taken long, later: that gives up the last two digits of a direction for four fifths of the time.
 _IN_SERIES, _LATE = 2e5, 5e3
+# Where a direction settles faster than by so many times N/m, as on a light axle, V̇ shows what is left out of it so many
+# times larger: no more is counted for being late.
+_EVEN, _ANYHOW = 4.0, 1e12
 _TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
 _LASTS = 50.0  # times the step over which its turning is seen: about how long it holds
 SEEN = 1e-4  # of the time in which the motion changes: over it one sees how the direction turns
@@ -64,6 +67,8 @@ class CreepingLaw(SlippingLaw):
         A unit vector: near it is the direction that slip keeps.
     in_series : float
         How many times its direction settles, at the least, in the time in which the motion changes.
+    even : float
+        How fast it counts as settling for that, at the most, in units of N/m.
     """
 
     variables = (*CONTACT, "speed")
@@ -79,9 +84,10 @@ class CreepingLaw(SlippingLaw):
         since: float = 0.0,
         near: tuple[float, float, float] = (1.0, 0.0, 0.0),
         in_series: float = 0.0,
+        even: float = _ANYHOW,
     ) -> None:
         super().__init__(weightless, turning)
-        self.step, self.since, self.in_series = step, since, in_series
+        self.step, self.since, self.in_series, self.even = step, since, in_series, even
         self.near_x, self.near_y, self.near_z = near
 
     @property
@@ -101,8 +107,8 @@ class CreepingLaw(SlippingLaw):
     def before_series(self, *, late: bool = False) -> CreepingLaw:
         """Return the same law, handed on where series follow its direction with less work."""
         near = self.near_x, self.near_y, self.near_z
-        in_series = _LATE if late else _IN_SERIES
-        return CreepingLaw(self.weightless, self.turning, self.step, self.since, near, in_series)
+        how = (_LATE, _EVEN) if late else (_IN_SERIES, _ANYHOW)
+        return CreepingLaw(self.weightless, self.turning, self.step, self.since, near, *how)
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
         """Tell that no direction has to settle."""
@@ -115,9 +121,11 @@ class CreepingLaw(SlippingLaw):
         n, near = contact.normal, Vector(self.near_x, self.near_y, self.near_z)
         first = near - n * n.dot(near)
         first = first / first.norm()
-        rates = slip_rates(system, time, contact, q, Omega, first, first * speed, coordinates, held=self.held)
-        c, s, settling = rates.settled()
-        return rates.direction(c, s), rates.direction(-s, c), settling
+        for _ in range(2):  # for slip along the direction looked for, not the one near it
+            rates = slip_rates(system, time, contact, q, Omega, first, first * speed, coordinates, held=self.held)
+            c, s, settling = rates.settled()
+            first, across = rates.direction(c, s), rates.direction(-s, c)
+        return first, across, settling
 
     def traced(self) -> CreepingLaw:
         """Return a copy that works its direction out once: rates, event functions and what is found share it."""
@@ -203,13 +211,15 @@ class CreepingLaw(SlippingLaw):
         hat, settling, left_out = self._way(system, time, state)
         now, Omega = self._now(system, time, state, hat), self.split(state)[2]
         speed = state[10]
+        most = now.normal_force * self.even / system.body.mass
+        counted = settling * most / (settling + most)
         return {
             **self._pressing(system, now, event_parameters),
             "held": speed,
             "settled": settling * (time - self.since) - SETTLES_FAST * speed,
             "lags": _LEFT_OUT**2 - left_out**2,
             "turns": settling**2 - (_TURNS * speed) ** 2 * Omega.dot(Omega),
-            "series": settling * self.step / SEEN - self.in_series * speed,
+            "series": counted * self.step / SEEN - self.in_series * speed,
             "turned": hat.dot(Vector(self.near_x, self.near_y, self.near_z)) - _NEAR,
             **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
         }
