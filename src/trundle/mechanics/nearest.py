@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _MOST_STEPS, _MOST_NEAR = 60, 20  # of Newton's method, which needs five: from afar, and from near by
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _NEXT_TO = 1e-7  # share of these by which a known point may be off
-_ROUNDING = 1e-15
+_ROUNDING, _ALL_BUT = 1e-15, 1e-12
 _SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
 _LOOKS, _GUESSES = 300, 6  # for a better first guess, and how many of them are followed
 _CLOSELY, _CLOSER_GUESSES = 0.93, 5  # cosine of the angle about the nearest one up to which one looks again
@@ -343,7 +343,8 @@ def _searched(
         for wrong, _ in _misplacements(system, contact, r, q):
             gap = np.where(wrong | np.isnan(gap), np.inf, gap)
     gap, rows = gap.reshape(-1, count), np.arange(time.size)
-    best = np.argmin(gap, axis=1)
+    # Of those that are one but for rounding, the first: then one comes back to what was known, to the last digit.
+    best = np.argmax(gap <= gap.min(axis=1, keepdims=True) * (1 + _ALL_BUT), axis=1)
     found = contact.point.array().reshape(-1, count, 3)[rows, best]
     return np.where(np.isfinite(gap[rows, best])[:, None], found, np.nan)
 
