@@ -137,7 +137,7 @@ def test_slip_and_grip_by_turns_count_the_steps_of_both() -> None:
 
 def test_no_law_is_unrolled_for_steps_that_patience_would_not_see() -> None:
     """Unrolling takes as long as the square of a law's cost and more: minutes for 1200, as of a disc in a cone."""
-    seen, unseen = 0.04, 1e-3  # s: a million steps to come, or fifty
+    seen, unseen = 0.04, 1e-3  # s: a million steps to come, or fifty million
     for cost, gone, level in (
         (400, seen, integrators.UNROLLED),
         (400, unseen, integrators.WITH_CARE),

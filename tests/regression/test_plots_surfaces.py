@@ -436,3 +436,17 @@ def test_a_surface_of_ones_own_is_drawn() -> None:
         "From the side",
     ]
     assert title_of(on(Trough(), {"position": (0.2, 0.0)}, 0.1).system) == "Ball on a fixed surface"
+
+
+@pytest.mark.parametrize("comes_back", [True, False])
+def test_a_flight_that_comes_back_is_drawn_whole(comes_back: bool) -> None:
+    """Thrown straight up it touches in one place, and the window round that is a tenth as high as its way."""
+    start = {"velocity": (0.0, 0.0, 4.0), "height": 0.001}
+    run = on(tr.Paraboloid(0.5), start, 2.0 if comes_back else 0.5, friction=0.3, restitution=0.8)
+    assert any(event.kind == "land" for event in run.events) == comes_back
+    (ax,) = (one for one in path_figure(run).axes if one.get_title(loc="left") == "Meridian plane")
+    scale = SCALES[ax.get_xlabel().rpartition("(")[2].rstrip(")")]
+    highest = scale * np.nanmax(np.concatenate([np.asarray(line.get_ydata(), float) for line in ax.lines]))
+    reached = float(run.data.position.values[:, 2].max())
+    assert reached > 0.6
+    assert (abs(highest - reached) < 0.01 * reached) == comes_back

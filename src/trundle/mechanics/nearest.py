@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _MOST_STEPS, _MOST_NEAR = 60, 20  # of Newton's method, which needs five: from afar, and from near by
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _NEXT_TO = 1e-7  # share of these by which a known point may be off
-_ROUNDING, _ALL_BUT = 1e-15, 1e-12
+_ROUNDING, _ALL_BUT = 1e-15, 1e-12  # the second: share by which two gaps are one
 _SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
 _LOOKS, _GUESSES = 300, 6  # for a better first guess, and how many of them are followed
 _CLOSELY, _CLOSER_GUESSES = 0.93, 5  # cosine of the angle about the nearest one up to which one looks again

@@ -99,11 +99,8 @@ def _here_and_ahead(system: RollingSystem, now: PhaseStart) -> list[list[Array]]
     """
     known: tuple[PhaseStart, list[list[Array]]] | None = system._known.get(_here_and_ahead)
     if known is None or known[0] is not now:
-        law, numbers, wait = (
-            python_law(system, now.law),
-            list(map(float, now.state_vector)),
-            _AHEAD * _moment(system, now),
-        )
+        law, numbers = python_law(system, now.law), list(map(float, now.state_vector))
+        wait = _AHEAD * _moment(system, now)
         found = [_vectors(law, now.time, numbers)]
         for look in (1, 2):
             later = now.law.rk4_step(system, now.time, numbers, look * wait, law.rates)

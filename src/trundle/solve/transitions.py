@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..errors import SolverError
-from ..mechanics.algebra import ZERO, Matrix, Vector
+from ..mechanics.algebra import ZERO, Vector, inertia_about
 from ..mechanics.contact import roll
 from ..mechanics.duals import value_of
 from ..mechanics.impact import land
@@ -146,11 +146,11 @@ def going_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart 
     if not (name in ("grip", "stop", "jam") or name.startswith(CORNER)):
         return None
     at = stop.at(system, law)
-    if (name in ("grip", "stop") and not _goes_on(system, law, at, stop)) or (
-        name == "jam" and _jams(system, law, at, stop)
-    ):
-        return None
-    return _same(system, law, at, stop.state_vector)
+    if name == "jam":
+        ends = _jams(system, law, at, stop)
+    else:
+        ends = not name.startswith(CORNER) and not _goes_on(system, law, at, stop)
+    return None if ends else _same(system, law, at, stop.state_vector)
 
 
 def later(system: RollingSystem, now: PhaseStart, time: float, numbers: Array) -> PhaseStart:
@@ -424,8 +424,8 @@ def _held_fast(system: RollingSystem, at: ContactState, left: Vector) -> Vector:
     Taken from V alone it would be much beside a light impulse, where a body of hardly any inertia turns.
     """
     rho, m = at.contact.offset, system.body.mass
-    about = (Matrix.identity() * rho.dot(rho) - Matrix.outer(rho, rho)) * m
-    return at.Omega - (system.body.inertia_in_space(at.orientation.matrix()) + about).solve(rho.cross(left) * m)
+    whole = inertia_about(system.body.inertia_in_space(at.orientation.matrix()), m, rho)
+    return at.Omega - whole.solve(ZERO, rho.cross(left) * m)
 
 
 def _come_to_it(system: RollingSystem, law: Law, at: ContactState, numbers: Any, stop: str) -> ContactState:

@@ -47,7 +47,8 @@ class CurvedDrawing(Drawing):
         touched = self.contact[~self.flying] if not self.flying.all() else self.contact
         self.window = window_of(self.surface, touched, facts.radius)
         # A flight that does not come back is followed only as far as the surface can still be seen.
-        leaves = part_in(facts.stretches[-1:], FLIGHT, self.time)
+        touched_last = max((event.time for event in run.events if event.kind == "land"), default=-math.inf)
+        leaves = part_in(facts.stretches[-1:], FLIGHT, self.time) & (self.time > touched_last)
         room = 0.6 * float(np.max(self.window.high - self.window.low))
         near = np.all((self.centre >= self.window.low - room) & (self.centre <= self.window.high + room), axis=1)
         self.shown = np.where((near | ~leaves)[:, None], self.centre, np.nan)
