@@ -11,7 +11,7 @@ MODULES = {  # what each brings, as it is imported
     "lab": ("fastapi", "uvicorn", "pebble", "pygltflib"),
     "jax": ("jax",),
     "notebook": ("anywidget",),
-    "numba": ("numba",),
+    "numba": ("llvmlite", "numba"),
     "parquet": ("pyarrow",),
     "score": ("pytest",),
     "sweep": ("dask", "distributed", "zarr"),

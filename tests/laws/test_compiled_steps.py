@@ -15,7 +15,8 @@ import tomli_w
 
 import trundle as tr
 from trundle.errors import SolverError
-from trundle.solve import compiled_steps, integrator_cache, runge_kutta, transitions
+from trundle.solve import compiled_steps, integrator_cache, runge_kutta
+from trundle.solve.machine_code import machine_code
 from trundle.solve.tape import Tape
 from trundle.solve.tracing import CompiledLaw
 
@@ -27,7 +28,7 @@ BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 @pytest.fixture
 def compiling(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Compile every law after its first steps, and count the calls of the loop."""
-    monkeypatch.setattr(runge_kutta, "TO_COMPILE", (0.0, 0.0))
+    monkeypatch.setattr(runge_kutta, "WORTH_THE_LOOP", 0.0)
     calls: list[int] = []
     loop = compiled_steps._loop
 
@@ -48,11 +49,9 @@ def followed(rates: Any, events: Any, y0: list[float], end: float, tolerance: fl
     """Follow y' = f(t, y), given on a tape, by the loop alone after SciPy's first step."""
     from scipy.integrate import DOP853
 
-    from trundle.solve.compiled_loop import compiled
-
     tape = Tape()
     t, *y = tape.inputs(1 + len(y0))
-    law = CompiledLaw(compiled(tape, rates(t, y)), compiled(tape, events(t, y)), len(events(t, y)), ())
+    law = CompiledLaw(*(machine_code(tape, of(t, y)) for of in (rates, events)), len(events(t, y)), ())
     plain = tape.function(rates(t, y))
     begun = DOP853(lambda t, y: np.array(plain([t, *y])), 0.0, np.array(y0), end, rtol=tolerance, atol=tolerance)
     begun.step()
@@ -194,9 +193,9 @@ def test_the_same_run_twice_is_the_same_to_the_last_bit() -> None:
     assert np.array_equal(first.orientation, second.orientation)
 
 
-@pytest.mark.parametrize("to_compile", [0.0, 1e30])
-def test_a_pole_of_a_formula_is_told_in_the_same_words(to_compile: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runge_kutta, "TO_COMPILE", (to_compile, 0.0))
+@pytest.mark.parametrize("worth", [0.0, 1e30])
+def test_a_pole_of_a_formula_is_told_in_the_same_words(worth: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runge_kutta, "WORTH_THE_LOOP", worth)
     push = tr.Force(("0.01 / (20 - t)**2", 0.0, 0.0))
     system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), loads=[push])
     with pytest.raises(SolverError, match=r"hardly gets on at t = 19\.99"):
@@ -267,24 +266,11 @@ orientation = [-0.821432, 0.255377, 0.282854, 0.0]
 
 @pytest.mark.usefixtures("through_walls")
 @pytest.mark.parametrize("name", CURVED)
-def test_no_law_is_compiled_for_the_few_steps_to_where_it_ends_the_run(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("trundle.solve.compiled_loop.compiled", lambda *_: pytest.fail("compiled"))
+@pytest.mark.parametrize("worth", [0.0, 1e30])
+def test_a_law_followed_to_where_it_ends_the_run(name: str, worth: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runge_kutta, "WORTH_THE_LOOP", worth)
     run = tr.Scenario.loads(CURVED[name]).run()
     assert run.events[-1].kind == "curved", run.events
-
-
-def test_a_law_of_more_operations_is_worth_compiling_for_more_steps_up_to_a_limit() -> None:
-    """The compiler's time grows with the law, and so does that of a step; what a step takes in any case does not."""
-    ball, egg = BALL, tr.Body.ellipsoid((0.03, 0.02, 0.025), 0.1)
-    plane, bowl = tr.Plane(), tr.EllipsoidalBowl((0.5, 0.4, 0.3))
-    steps = []
-    for body, surface in ((ball, plane), (egg, plane), (egg, bowl)):
-        system = tr.RollingSystem(body, tr.Support(surface))
-        start = transitions.at_start(system, system.place((0.01, 0.02)))
-        steps.append(runge_kutta.worth_compiling(system, start))
-    assert 500 < steps[0] < steps[1] < steps[2] < 6000, steps
 
 
 def slipping_again_and_again(duration: float) -> tr.Scenario:
@@ -324,16 +310,16 @@ def test_what_a_run_has_had_compiled_is_there_for_each_later_stretch(
 
 @pytest.mark.parametrize("rate", [0.5, -2.0])
 @pytest.mark.parametrize("tolerance", [1e-13, 1e-12, 1e-9])
-@pytest.mark.parametrize("to_compile", [0.0, 1e30])
+@pytest.mark.parametrize("worth", [0.0, 1e30])
 @pytest.mark.parametrize("carried", [(), (tr.Shake((0.0, 0.0, 0.002), 20.0),)], ids=["alone", "shaken"])
 def test_an_axle_that_a_dry_bearing_stops_is_still_then(
-    carried: tuple[tr.Motion, ...], to_compile: float, tolerance: float, rate: float, monkeypatch: pytest.MonkeyPatch
+    carried: tuple[tr.Motion, ...], worth: float, tolerance: float, rate: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """I ω̇ = −τ ω/√(ω² + b²): t = I (F(ω₀) − F(ω))/τ, F = √(ω² + b²) + b ln(ω/(b + √(ω² + b²))), b = 0.01 rad/s.
 
     It dies out 400 times a second in the end: were steps as long as the motion alone allows, the rate would tremble.
     """
-    monkeypatch.setattr(runge_kutta, "TO_COMPILE", (to_compile, 0.0))
+    monkeypatch.setattr(runge_kutta, "WORTH_THE_LOOP", worth)
     inertia, torque, ease = 0.002, 0.008, 0.01
     axle = tr.FreeAxle(inertia, rate=rate, bearing_torque=torque, below=ease)
     table = tr.Support(tr.Plane(), motion=tr.Combined((*carried, axle)) if carried else axle, friction=0.0)
@@ -383,99 +369,6 @@ def test_without_heyoka_every_scenario_passes_its_card(name: str, tmp_path: Path
     assert "DOP853" in done.stdout
 
 
-ONE_LAW = """
-import sys
-import numpy as np
-from pathlib import Path
-from trundle.solve import integrator_cache
-from trundle.solve.compiled_loop import compiled
-from trundle.solve.compiled_steps import CompiledDOP853
-from trundle.solve.tape import Tape
-from trundle.solve.tracing import CompiledLaw
-
-integrator_cache.cache_folder = lambda: Path(sys.argv[1])
-laws = []
-for which in map(float, sys.argv[2:]):
-    tape = Tape()
-    t, y = tape.inputs(2)
-    laws.append(CompiledLaw(compiled(tape, [-which * y]), compiled(tape, []), 0, ()))
-    if len(sys.argv) > 3:
-        assert laws[-1].rates.stats.cache_hits
-
-
-class Begun:
-    t, t_bound, y, h_abs = 0.0, 1.0, np.array([1.0]), 0.01
-
-
-for which, law in zip(sys.argv[2:], laws):
-    Begun.f = np.array([-float(which)])
-    *_, last = CompiledDOP853(law, Begun, 0.0, 1e-12, np.array([1e-12]))
-    assert abs(last(1.0)[0] - np.exp(-float(which))) < 1e-11, (which, last(1.0)[0])
-"""
-
-
-def test_laws_that_other_processes_compiled_are_not_taken_for_each_other(tmp_path: Path) -> None:
-    """Each process counts what it compiles from 1 on: two of them give two laws one number."""
-    (tmp_path / "one_law.py").write_text(ONE_LAW)
-    for laws in (["1"], ["2"], ["3"], ["1", "2", "3"]):
-        words = [sys.executable, str(tmp_path / "one_law.py"), str(tmp_path / "cache"), *laws]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)  # noqa: S603
-        assert done.returncode == 0, done.stderr
-
-
-def kept(folder: Path) -> list[Path]:
-    return sorted((folder / "__pycache__").glob("law-*.nb?"))
-
-
-def compiled_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> bool:
-    """Compile x y in a cache; tell whether it was read from there."""
-    from trundle.solve.compiled_loop import compiled
-
-    monkeypatch.setattr(integrator_cache, "cache_folder", lambda: folder)
-    tape = Tape()
-    x, y = tape.inputs(2)
-    function, found = compiled(tape, [x * y]), np.empty(1)
-    function(np.array([3.0, 2.0]), found)
-    assert found[0] == 6.0
-    return bool(function.stats.cache_hits)
-
-
-def test_a_law_is_compiled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert [compiled_in(tmp_path / "cache", monkeypatch) for _ in range(3)] == [False, True, True]
-
-
-@pytest.mark.skipif(os.name != "posix", reason="permissions")
-@pytest.mark.parametrize("of", ["folder", "beside", "text", "compiled"])
-def test_what_others_may_write_is_not_read(of: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = tmp_path / "cache"
-    compiled_in(folder, monkeypatch)
-    (text,) = folder.glob("law-*.py")
-    place = {"folder": folder, "beside": folder / "__pycache__", "text": text, "compiled": kept(folder)[0]}[of]
-    place.chmod(place.stat().st_mode | 0o022)
-    assert not compiled_in(folder, monkeypatch)
-
-
-@pytest.mark.parametrize("damage", [b"", b"nothing", None])
-def test_a_damaged_cache_is_no_reason_to_fail(
-    damage: bytes | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder = tmp_path / "cache"
-    compiled_in(folder, monkeypatch)
-    for path in kept(folder):
-        path.write_bytes(path.read_bytes()[:-7] if damage is None else damage)
-    assert not compiled_in(folder, monkeypatch)
-    compiled_in(folder, monkeypatch)
-    assert compiled_in(folder, monkeypatch)  # kept anew
-
-
-def test_a_text_that_another_has_changed_is_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = tmp_path / "cache"
-    compiled_in(folder, monkeypatch)
-    (text,) = folder.glob("law-*.py")
-    text.write_text("raise SystemExit")
-    assert not compiled_in(folder, monkeypatch)
-
-
 def test_where_there_are_no_owners_the_cache_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As on Windows, where every file seems to be anybody's to write."""
     folder = tmp_path / "cache"
@@ -485,4 +378,3 @@ def test_where_there_are_no_owners_the_cache_is_read(tmp_path: Path, monkeypatch
     for path in (folder, *folder.iterdir()):
         path.chmod(0o777)
     assert integrator_cache.load("a") == {"some": "thing"}
-    assert [compiled_in(folder, monkeypatch) for _ in range(2)] == [False, True]

@@ -302,24 +302,6 @@ def test_slip_over_a_light_axle_moves_a_heavy_body_as_its_forces_do(many: int, m
     assert apart[clear].max() <= 1e-8
 
 
-@pytest.mark.parametrize("which", GIVES_WAY)
-def test_machine_code_gives_what_a_law_gives_in_python(which: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    system = tr.RollingSystem(GIVES_WAY[which], SHAKEN)
-    creeping, following = first_slip(system, monkeypatch)
-    state = following.state_vector
-    numbers = [*state[:10], float(np.linalg.norm(state[10:13])), *state[13:]]
-    for law, known in ((creeping, numbers), (RollingLaw(), state[:10])):
-        plain = python_law(system, law, (0.0,) * law.event_parameters, following.time, known)
-        assert plain.in_machine_code is not None
-        code = plain.in_machine_code()
-        assert code is not plain
-        for after in (0.0, 1e-5, 1e-4):
-            at = following.time + after, known
-            # slopes are differences of what is rounded over a ten-thousandth of the time in which the motion changes
-            np.testing.assert_allclose(code.rates(*at), plain.rates(*at), rtol=1e-10, atol=1e-10)
-            np.testing.assert_allclose(code.event_functions(*at), plain.event_functions(*at), rtol=1e-8, atol=1e-9)
-
-
 def test_rates_want_no_numbers_of_event_functions_also_where_one_text_gives_all() -> None:
     """A ball in a cone: all outputs are the same work. It was an IndexError where a load has a corner."""
     run = tr.Scenario.loads('run = { method = "auto", duration = 0.1, every = 0.1 }' + GRIPS_AND_SLIPS)
@@ -331,40 +313,6 @@ def test_rates_want_no_numbers_of_event_functions_also_where_one_text_gives_all(
     for name in ("rates", "event_functions", "found", "corners"):
         assert getattr(bare, name)(0.0, [*start, 0.01]) == getattr(whole, name)(0.0, [*start, 0.01])
     assert len(bare.event_functions(0.0, [*start, 0.01])) == len(bare.names)
-
-
-def test_a_law_on_a_table_has_no_machine_code_and_stays_as_it_is() -> None:
-    side = [-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3]
-    dish = tr.HeightField.through(side, side, [[x * x + y * y for y in side] for x in side])
-    system = tr.RollingSystem(GIVES_WAY["an egg"], tr.Support(dish))
-    law = python_law(system, RollingLaw())
-    assert law.in_machine_code is not None
-    assert law.in_machine_code().rates is law.rates
-
-
-@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
-def test_machine_code_is_taken_after_so_many_steps_of_one_run(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    begun = list[int]()
-    taken: Any = python_law
-
-    def watched(system: Any, law: Law, *given: Any) -> Any:
-        traced = taken(system, law, *given)
-
-        def in_machine_code() -> Any:
-            begun.append(1)
-            return traced.in_machine_code()
-
-        return replace(traced, in_machine_code=in_machine_code)
-
-    monkeypatch.setattr(runge_kutta, "python_law", watched)
-    monkeypatch.setattr(runge_kutta, "_TOO_MANY_IN_SERIES", 0)
-    counts = []
-    for duration in (0.4, 0.5, 0.5, 0.4):  # whatever other runs have come through
-        gripping_and_slipping(method, duration)
-        counts.append(len(begun))
-        begun.clear()
-    assert counts[0] == counts[3] == 0
-    assert counts[1] == counts[2] > 10
 
 
 @pytest.mark.parametrize("force", [0.3, 0.03, 1e-3, 1e-6])

@@ -15,6 +15,7 @@ from tests.tolerances import EXACT
 import trundle as tr
 from trundle.mechanics.surfaces.splines import Spline
 from trundle.solve.laws import FlightLaw, Law, RollingLaw, SlippingLaw
+from trundle.solve.machine_code import machine_code
 from trundle.solve.tape import Tape
 from trundle.solve.tracing import python_law
 
@@ -39,19 +40,14 @@ def on_a_tape(spline: Spline, at: tuple[Any, ...], orders: tuple[int, ...]) -> A
     return [function(list(map(float, place)))[0] for place in zip(*at, strict=True)]
 
 
-def compiled(spline: Spline, at: tuple[Any, ...], orders: tuple[int, ...]) -> Any:
-    pytest.importorskip("numba")
-    from trundle.solve.compiled_loop import compiled
-
-    tape, found, out = Tape(), [], np.empty(1)
-    function = compiled(tape, [spline(tuple(tape.inputs(len(at))), orders)])
-    for place in zip(*at, strict=True):
-        function(np.array(place), out)
-        found.append(out[0])
-    return found
+def in_machine_code(spline: Spline, at: tuple[Any, ...], orders: tuple[int, ...]) -> Any:
+    pytest.importorskip("llvmlite")
+    tape = Tape()
+    function = machine_code(tape, [spline(tuple(tape.inputs(len(at))), orders)])
+    return [function(list(map(float, place)))[0] for place in zip(*at, strict=True)]
 
 
-EVALUATED = pytest.mark.parametrize("evaluated", [on_floats, on_arrays, on_a_tape, compiled])
+EVALUATED = pytest.mark.parametrize("evaluated", [on_floats, on_arrays, on_a_tape, in_machine_code])
 
 
 @EVALUATED

@@ -9,22 +9,19 @@ from __future__ import annotations
 
 import contextlib
 import warnings
-from collections.abc import Sequence
 from typing import Any
 
 import numba
 import numpy as np
-from numba import errors, float64, int64, types, void
+from numba import errors, float64, int64, types, uintp, void
 
-from ..mechanics.surfaces.splines import evaluated
 from .compiled_steps import ENDED, FULL, LOOK, LOW, STUCK
-from .integrator_cache import forget, kept_text
-from .tape import Tape, defined
+from .machine_code import MachineCode
 
 _SAFETY, _LEAST_FACTOR, _MOST_FACTOR, _EXPONENT = 0.9, 0.2, 10.0, -1 / 8  # of the next step, as SciPy has them
 
 _array, _table = float64[::1], float64[:, ::1]
-_FILLING = void(_array, _array)  # of [t, *state, *numbers], and what it fills in
+_FILLING = void(uintp, uintp)  # of where [t, *state, *numbers] lie, and where what it fills in is to lie
 _STATE, _FOUND = types.UniTuple(_array, 5), types.Tuple((_array, _table, float64[:, :, ::1], _table))
 _TABLES = types.Tuple((_table, _array, _array, _array, _table, _array))
 _given: Any = {"error_model": "numpy", "nogil": True}
@@ -112,7 +109,7 @@ def _looked(functions: Any, looks: Any, begin: Any, h: Any, y: Any, terms: Any, 
             for j in range(7):
                 part = (part + terms[6 - j, i]) * (share if j % 2 == 0 else 1 - share)
             x[1 + i] = part + y[i]
-        functions(x, values[look])
+        functions(x.ctypes.data, values[look].ctypes.data)
     return _may_fall(values)
 
 
@@ -130,7 +127,7 @@ def _step(
                 moved[i] += carry[i]
                 new[i] = y[i] + moved[i]
                 x[1 + i] = new[i]
-        rates(x, k[which])
+        rates(x.ctypes.data, k[which].ctypes.data)
 
 
 def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, found: Any) -> Any:
@@ -167,7 +164,7 @@ def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, 
         for which in range(13, 16):
             _stage(which, a, k, y, h, room[2], x)
             x[0] = begin + (t + c[which] * h)
-            rates(x, k[which])
+            rates(x.ctypes.data, k[which].ctypes.data)
         _polynomial(d, k, y, new, h, terms[count])
         _copy(y, starts[count])
         if values.shape[1] and _looked(functions, looks, begin + t, h, y, terms[count], x, values):
@@ -183,6 +180,20 @@ def _advance(rates: Any, functions: Any, numbers: Any, state: Any, tables: Any, 
     return count, why
 
 
+class _Function(types.WrapperAddressProtocol):
+    """Machine code as numba calls it."""
+
+    def __init__(self, code: MachineCode) -> None:
+        self.code = code
+
+    def __wrapper_address__(self) -> int:
+        return self.code.address
+
+    def signature(self) -> Any:
+        """Return what it takes."""
+        return _FILLING
+
+
 def advance() -> Any:
     """Return the loop, compiled, or as numba kept it.
 
@@ -196,37 +207,5 @@ def advance() -> Any:
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", errors.NumbaExperimentalFeatureWarning)  # of functions as arguments
-        return _compiled(_advance, signature)
-
-
-def compiled(tape: Tape, outputs: Sequence[Any]) -> Any:
-    """Return what a tape holds as a compiled function that fills its outputs in.
-
-    Examples
-    --------
-    >>> tape = Tape()
-    >>> x, y = tape.inputs(2)
-    >>> found = np.empty(1)
-    >>> compiled(tape, [x * y])(np.array([3.0, 2.0]), found)
-    >>> found.tolist()
-    [6.0]
-    """
-    # Numba names what it compiles after the function: were two laws of one name, it would take one for the other.
-    text, name = tape.filling(outputs)
-    file = kept_text(text)
-    # Where numba reads what it has kept, it asks for the module.
-    known: Any = {"where": _where, "spline": _spline, "table": np.array, "__name__": __name__}
-    function = defined(text, name, "<law>" if file is None else str(file), **known)
-    if file is not None:
-        with contextlib.suppress(Exception):
-            return njit(_FILLING, cache=True, **_given)(function)
-        forget(file)
-    return njit(_FILLING, **_given)(function)
-
-
-@njit(inline="always", **_given)
-def _where(condition: Any, yes: Any, no: Any) -> Any:
-    return yes if condition else no
-
-
-_spline = njit(**_given)(evaluated)
+        loop = _compiled(_advance, signature)
+    return lambda rates, functions, *given: loop(_Function(rates), _Function(functions), *given)

@@ -1,7 +1,4 @@
-"""What was compiled, in the user's cache: the least recently used goes, so that it does not grow without end.
-
-An integrator is a file of ours. A law that numba compiles is a text of ours, beside which numba keeps what comes of it.
-"""
+"""Compiled integrators in the user's cache: the least recently used goes, so that it does not grow without end."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ from ..files import written_whole
 
 MOST_BYTES = 512 * 2**20  # some four hundred integrators
 MOST_DAYS = 90.0  # not used for longer
-_OURS = ("taylor-*.pickle", "law-*.py", "__pycache__/law-*.nb?")
+_OURS = ("taylor-*.pickle", "law-*.py", "__pycache__/law-*.nb?")  # the last two of earlier versions
 _ROOM = 0.8  # share of the most that is left, so that not each new one asks for room
 
 
@@ -75,48 +72,6 @@ def store(key: str, integrator: Any) -> None:
             temporary.touch(mode=0o600)  # whatever the umask, or `load` would not trust it
             temporary.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
         prune(folder)
-
-
-def kept_text(text: str) -> Path | None:
-    """Write a program's text into the cache, and return its file; None where numba is to keep nothing beside it.
-
-    Examples
-    --------
-    >>> kept_text("x = 1") == kept_text("x = 1")
-    True
-    """
-    path = cache_folder() / f"law-{hashlib.sha256(text.encode()).hexdigest()[:32]}.py"
-    beside = path.parent / "__pycache__"
-    with contextlib.suppress(Exception):
-        for folder in (path.parent, beside):
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if not path.exists():  # numba asks when it was written
-            with written_whole(path) as temporary:
-                temporary.touch(mode=0o600)
-                temporary.write_text(text, encoding="utf-8")
-            prune(path.parent)
-        kept = _beside(path)
-        for file in kept:
-            os.utime(file)  # used now
-        if all(map(_trusted, (path.parent, beside, path, *kept))) and path.read_text(encoding="utf-8") == text:
-            return path
-    return None
-
-
-def forget(path: Path) -> None:
-    """Remove what numba has kept beside a text, which could not be read.
-
-    Examples
-    --------
-    >>> forget(Path("no-such.py"))
-    """
-    with contextlib.suppress(OSError):
-        for file in _beside(path):
-            file.unlink()
-
-
-def _beside(path: Path) -> list[Path]:
-    return list((path.parent / "__pycache__").glob(f"{path.stem}.*"))
 
 
 def _trusted(place: Path) -> bool:

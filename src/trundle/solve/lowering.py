@@ -15,8 +15,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import less, namespace
 from ..mechanics.system import RollingSystem
@@ -324,46 +322,6 @@ def _value(kind: str, found: Iterator[float], reference: float) -> float:
     # A float of slope × time would lose what a million turns leave; a fraction does not.
     angle = float((Fraction(slope) * Fraction(reference) + Fraction(offset)) % TURN)
     return math.cos(angle) if kind == "cos" else math.sin(angle)
-
-
-def has_machine_code(tape: Tape, *outputs: Sequence[Any]) -> bool:
-    """Tell whether heyoka is here, and knows all that some outputs of a tape lean on: tables and loops it does not.
-
-    Examples
-    --------
-    >>> tape = Tape()
-    >>> x, y = tape.inputs(2)
-    >>> has_machine_code(tape, [x * y], [x + y]) in (True, False)
-    True
-    """
-    from importlib.util import find_spec
-
-    known = {"input", *_SUMS, *_HEYOKA}
-    needed = tape.needed([one for part in outputs for one in part])
-    return find_spec("heyoka") is not None and all(tape.steps[i][0] in known for i in needed)
-
-
-def machine_code(tape: Tape, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]]:
-    """Return the function of a tape's inputs that gives some outputs, compiled in haste.
-
-    Examples
-    --------
-    >>> tape = Tape()
-    >>> x, y = tape.inputs(2)
-    >>> machine_code(tape, [x * y + 1.0, x * y])([3.0, 2.0])
-    [7.0, 6.0]
-    """
-    import heyoka
-
-    inputs = heyoka.make_vars(*(f"x_{i}" for i in range(tape.size)))
-    filled = heyoka.cfunc(_as_heyoka(tape, outputs, inputs), vars=inputs, compact_mode=False, opt_level=0)
-    count = len(outputs)
-
-    def function(x: Sequence[float]) -> list[float]:
-        found: list[float] = filled(np.array(x), outputs=np.empty(count)).tolist()
-        return found
-
-    return function
 
 
 def _as_heyoka(tape: Tape, outputs: Sequence[Any], inputs: Sequence[Any]) -> list[Any]:

@@ -24,7 +24,7 @@ from .dense import Keep, Leg, TooMany
 from .laws import Law
 from .patience import Patience
 from .phases import Integrate, Segment, cut
-from .roots import root, until_one_falls
+from .roots import root
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import PythonLaw, python_law
 from .transitions import PhaseStart, ZeroCrossing
@@ -47,24 +47,18 @@ _OF_A_BRIEF = 0.03  # the same of a law that works slopes out by differences: le
 _STABLE = 3.0  # times as long as what dies out takes: half of where the method becomes unstable
 _RATES = 15  # evaluations of the law in a step of SciPy's
 OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
-_OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
-_BEGINNING = 20  # steps, after which one sees how many there will be
-_SEEN = 0.0005  # share of the steps to come to be done first: where slip begins, there seem to be far too many
-_TRIED = 0.1  # share of the steps that are worth compiling to be done first: no more is lost where few come after all
-_GROWING = 1.5  # times as long as the mean of so many: then the next will be longer yet
+_OF_SCIPY = 5e5  # products that take as long as a step of SciPy's, without the law
 _TOO_MANY_IN_SERIES = 10_000  # steps of series, from where brief laws were handed on: a second
-# Steps of a brief law in a run, which take half as long as to compile it, whatever it is; more where event functions
-# are other work than rates.
-_WORTH_MACHINE_CODE = 150
-TO_COMPILE = (2e8, 4.4e6)  # products in the time in which numba compiles a law, and for each operation of it
+_BEGINNING = 20  # steps, after which one sees how many there will be
+_GROWING = 1.5  # times as long as the last one: then the next will be longer yet
+WORTH_THE_LOOP = 1000.0  # steps of SciPy's, which take about as long as to import numba
 
 
 @dataclass
 class Taken:
-    """What a run has come through: steps of each law one by one, and laws whose steps were worth compiling."""
+    """What a run has come through: steps of each law one by one."""
 
     steps: Counter[type[Law]] = field(default_factory=Counter)
-    compiled: set[Any] = field(default_factory=set)  # their identities
     in_series: int = 0  # steps by series from where a brief law was handed on to them
     handed_on: bool = False  # whether the last stretch was one of a brief law
 
@@ -73,18 +67,19 @@ class Taken:
         """Whether brief laws seem to have been handed on too soon: series took long from there on."""
         return self.in_series > _TOO_MANY_IN_SERIES
 
-    def counts(self, law: Law) -> Callable[[], bool]:
-        """Return what takes account of a step of a law that is not compiled for numba's loop."""
+    def worth_the_loop(self, law: Law, stepper: Any) -> bool:
+        """Take account of a step of a law, and tell whether there have been many, or many seem to come.
 
-        def counted() -> bool:
-            self.steps[type(law)] += 1
-            return False
-
-        return counted
+        While steps grow nothing is known.
+        """
+        self.steps[type(law)] += 1
+        done, coming = self.steps[type(law)], (stepper.t_bound - stepper.t) / stepper.h_abs
+        seen = done >= _BEGINNING and stepper.h_abs <= _GROWING * stepper.step_size
+        return done > WORTH_THE_LOOP or (seen and WORTH_THE_LOOP < coming < _most_steps(law))
 
     def copy(self) -> Taken:
         """Return another that goes on from here."""
-        return Taken(Counter(self.steps), set(self.compiled), self.in_series)
+        return Taken(Counter(self.steps), self.in_series)
 
 
 class Path(Protocol):
@@ -175,7 +170,7 @@ def dense(
     paths = _Paths(np.asarray(now.state_vector, dtype=float), most)
 
     def work() -> float:
-        each = python_law(system, now.law).operations * _PRODUCTS * (_RATES + LOOKS)
+        each = python_law(system, now.law).work * (_RATES + LOOKS)
         by_scipy = sum(isinstance(path, _OneStep) * path.count for path in paths.paths)
         return by_scipy * (_OF_SCIPY + each) + (paths.count - by_scipy) * OF_A_STEP
 
@@ -198,16 +193,6 @@ def first_steps(system: RollingSystem, now: PhaseStart, end: float, tolerance: f
     return (paths.reached - paths.begins[count // 2]) / (len(paths.begins) - count // 2)
 
 
-def worth_compiling(system: RollingSystem, now: PhaseStart) -> float:
-    """Return for how many steps of a law SciPy takes as long as numba takes to compile it."""
-    return _worth_compiling(_traced(system, now))
-
-
-def _worth_compiling(traced: PythonLaw) -> float:
-    at_all, each = TO_COMPILE
-    return (at_all + each * traced.operations) / (_OF_SCIPY + traced.operations * _PRODUCTS * _RATES)
-
-
 def _traced(system: RollingSystem, now: PhaseStart) -> PythonLaw:
     """Return a law as it begins to hold on plain numbers."""
     given = (*now.event_parameters, *corners.directions(system, now))
@@ -226,9 +211,6 @@ def _integrated(
     """Follow one law to its first stop; all times count from its beginning."""
     taken = Taken() if taken is None else taken
     law, begin, traced = now.law, now.time, _traced(system, now)
-    if law.brief and traced.in_machine_code is not None:
-        worth = _WORTH_MACHINE_CODE * traced.all_operations / traced.operations
-        traced = traced.in_machine_code() if taken.steps[type(law)] > worth else traced
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
@@ -300,11 +282,10 @@ def _paths(
             given["first_step"] = law.lasts
         with np.errstate(over="ignore", invalid="ignore"):  # of a first step that is tried
             stepper = DOP853(rates, t, y, end, max_step=longest, **given)
+        enough = partial(taken.worth_the_loop, law, stepper)
         compiles = traced.compiled is not None and available()
-        counted = _StepsToCome(law, traced, begin, stepper, taken).worth_compiling if compiles else taken.counts(law)
-        yield from _one_by_one(stepper, counted)
+        yield from _one_by_one(stepper, lambda: enough() and compiles)
         if stepper.status == "running" and traced.compiled is not None:
-            taken.compiled.add(law.identity)
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least, longest)
 
 
@@ -333,62 +314,6 @@ def _one_by_one(stepper: Any, until: Callable[[], bool]) -> Iterator[Path]:
         yield _OneStep(float(stepper.t_old), float(stepper.t), stepper.dense_output())
         if until():
             return
-
-
-class _StepsToCome:
-    """Tells after a step whether so many more of its law are to come that they are better compiled.
-
-    How many there will be, the last of them tell and how far the law seems to lead: to the run's end, or to where an
-    event function comes to zero that goes on falling as it fell. While steps grow nothing is known, nor where there
-    seem to be more than are ever taken; a share of them, and of what is worth it, is to be done first. Where half of
-    what is worth it is done, stretches of this law have come again and again: only what ends the run ends them. Once a
-    run has had a law compiled, that is there for each later stretch of it.
-
-    Parameters
-    ----------
-    law, traced : Law, PythonLaw
-        What is followed.
-    begin : float
-        From when the stepper's times count, s.
-    stepper : OdeSolver
-        On its way.
-    taken : Taken
-        What the run has come through; counted on here.
-    """
-
-    def __init__(self, law: Law, traced: PythonLaw, begin: float, stepper: Any, taken: Taken) -> None:
-        self.law, self.traced, self.begin, self.stepper, self.taken = law, traced, begin, stepper, taken
-        self.worth = _worth_compiling(traced)
-        self.ending = np.array([name in (*phases.ENDS, "jam") for name in traced.names], dtype=bool)
-        self.count, self.time, self.values = 0, float(stepper.t), self._event_functions()
-
-    def worth_compiling(self) -> bool:
-        """Take account of a step, and tell."""
-        self.count += 1
-        self.taken.steps[type(self.law)] += 1
-        if self.law.identity in self.taken.compiled:
-            return True
-        if self.count % _BEGINNING:
-            return False
-        gone, left = self.stepper.t - self.time, self._left()
-        mean = gone / _BEGINNING
-        growing, coming = self.stepper.h_abs > _GROWING * mean, left / mean
-        first = min(max(_SEEN * coming, _TRIED * self.worth), self.worth / 2)
-        seen = self.taken.steps[type(self.law)] >= first
-        return seen and not growing and self.worth < coming < _most_steps(self.law)
-
-    def _left(self) -> float:
-        """Return how much time seems to be left, s, seen over the steps since this was last asked."""
-        gone, before = self.stepper.t - self.time, self.values
-        self.time, self.values = float(self.stepper.t), self._event_functions()
-        which = self.ending | (2 * self.taken.steps[type(self.law)] < self.worth)
-        return min(self.stepper.t_bound - self.time, until_one_falls(before[which], self.values[which], gone))
-
-    def _event_functions(self) -> Array:
-        try:
-            return np.array(self.traced.event_functions(self.begin + self.stepper.t, self.stepper.y.tolist()))
-        except (ArithmeticError, ValueError):
-            return np.full(len(self.traced.names), np.nan)
 
 
 def _most_steps(law: Law) -> float:

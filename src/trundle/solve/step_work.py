@@ -66,4 +66,4 @@ def takes_less(system: RollingSystem, start: State, end: float, tolerance: float
         compiled = (end - now.time) / runge_kutta.first_steps(system, now, end, finer, _FIRST)
     except SolverError:
         return False
-    return 2 * runge_kutta.worth_compiling(system, now) < compiled < steps - _BEGINNING
+    return 2 * runge_kutta.WORTH_THE_LOOP < compiled < steps - _BEGINNING

@@ -96,18 +96,6 @@ class Tape:
         text = ["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]
         return defined("\n".join([*self._tables(outputs), *text]))
 
-    def filling(self, outputs: Sequence[Any]) -> tuple[str, str]:
-        """Return the text of a function of the inputs and an array, `out`, that fills the outputs in, and its name.
-
-        No other function has its name: it is made from what it does.
-        """
-        lines, results = self.written(outputs, Dialect())
-        worked_out = [f"    {name} = {text}" for name, text in lines]
-        filled = [f"    out[{i}] = {part}" for i, part in enumerate(results)]
-        body = "\n".join([*worked_out, *filled, "    return", ""])
-        name = f"law_{hashlib.sha256(body.encode()).hexdigest()[:32]}"
-        return "\n".join([*self._tables(outputs), f"def {name}(x, out):", body]), name
-
     def _tables(self, outputs: Sequence[Any]) -> list[str]:
         """Return the lines that define the tables which steps lean on."""
         found = [part for i in self.needed(outputs) for part in self.steps[i][1:] if isinstance(part, Pieces)]
@@ -392,9 +380,8 @@ def _is(value: Any, number: float) -> bool:
 
 
 def _names(pieces: Pieces) -> list[str]:
-    """Return what the tables of pieces are called: no others, and none evaluated otherwise, have these names."""
-    known = repr((pieces.x, pieces.y, pieces.terms)).encode() + evaluated.__code__.co_code
-    digest = hashlib.sha256(known).hexdigest()[:32]
+    """Return what the tables of pieces are called: no others have these names."""
+    digest = hashlib.sha256(repr((pieces.x, pieces.y, pieces.terms)).encode()).hexdigest()[:32]
     return [f"{part}_{digest}" for part in ("x", "y", "terms")]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -15,11 +15,13 @@ from ..mechanics.scalars import Scalar, as_float, namespace
 from ..mechanics.system import RollingSystem, State
 from . import corner_events
 from .laws import Law, RollingLaw
+from .machine_code import WITH_CARE, MachineCode, available, machine_code
 from .tape import Tape
 
 _MOST_TRACED = 64  # kept
 _LONG, _ALIKE = 2000, 1.1  # operations; times those of the rates that all outputs of a law are together at most
-_UNTRACED = 10_000  # operations that take as long as a law on vectors
+_OF_PYTHON = 25.0  # operations of machine code that take as long as one of Python's
+_UNTRACED = 250_000.0  # the same for a law on vectors
 
 
 @dataclass(frozen=True)
@@ -49,13 +51,9 @@ class PythonLaw:
     corners : callable
         (t, state) -> the components of what passes through zero at each corner of the loads.
     compiled : callable, optional
-        () -> the same for numba's loop, which takes a second to compile; absent: it cannot be traced.
-    operations : int
-        About how many the rates are.
-    all_operations : int
-        About how many rates and event functions are.
-    in_machine_code : callable, optional
-        () -> the same law in machine code, which takes half a second to compile; where it cannot be, itself.
+        () -> the same for the compiled loop, with care; absent: it cannot be traced.
+    work : float
+        About how long the rates take, operations of machine code.
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
@@ -64,9 +62,7 @@ class PythonLaw:
     found: Callable[[float, Sequence[float]], list[float]]
     corners: Callable[[float, Sequence[float]], list[float]]
     compiled: Callable[[], CompiledLaw] | None = None
-    operations: int = _UNTRACED
-    all_operations: int = 2 * _UNTRACED
-    in_machine_code: Callable[[], PythonLaw] | None = None
+    work: float = _UNTRACED
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -118,29 +114,15 @@ def python_law(
     values = [*system.once(numbers), *own.values(), *event_parameters]
     flat = _known(system, law, tuple(own))
     values += [0.0] * (flat.values - len(values))  # of which rates do not lean on those of event functions
-    traced = PythonLaw(
+    return PythonLaw(
         lambda t, y: flat.rates([t, *y, *values]),
         lambda t, y: flat.event_functions([t, *y, *values]),
         flat.names,
         lambda t, y: flat.found([t, *y, *values]),
         lambda t, y: flat.corners([t, *y, *values]),
         lambda: CompiledLaw(*flat.compiled, len(flat.names), tuple(map(float, values))),
-        flat.operations,
-        flat.all_operations,
+        flat.work,
     )
-
-    def in_machine_code() -> PythonLaw:
-        if not flat.machine_code:
-            return traced
-        rates, event_functions = flat.machine_code
-        return replace(
-            traced,
-            rates=lambda t, y: rates([t, *y, *values]),
-            event_functions=lambda t, y: event_functions([t, *y, *values]),
-            compiled=None,
-        )
-
-    return replace(traced, in_machine_code=in_machine_code)
 
 
 _Function = Callable[[Sequence[float]], list[float]]
@@ -155,21 +137,14 @@ class _Flat:
     names: tuple[str, ...]
     found: _Function
     corners: _Function
-    filling: Callable[[], tuple[Any, Any]]
+    compiling: Callable[[], tuple[MachineCode, MachineCode]]
     values: int  # numbers after the state
-    operations: int
-    all_operations: int
-    compiling: Callable[[], tuple[_Function, ...]]
+    work: float
 
     @cached_property
-    def machine_code(self) -> tuple[_Function, ...]:
-        """Rates and event functions in machine code; nothing where there is none."""
+    def compiled(self) -> tuple[MachineCode, MachineCode]:
+        """Rates and event functions, compiled with care."""
         return self.compiling()
-
-    @cached_property
-    def compiled(self) -> tuple[Any, Any]:
-        """Rates and event functions, compiled."""
-        return self.filling()
 
 
 @cache
@@ -207,42 +182,45 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     found = free.found(symbolic, time, state)
     vectors = [part for vector in corner_events.vectors(symbolic, free, time, state) for part in vector]
     values = list(stops.values())
-    rates_, stops_, found_, vectors_ = _functions(tape.function, tape, rates, values, found, vectors)
+    rates_, stops_, found_, vectors_ = _functions(tape, rates, values, found, vectors)
 
-    def filling() -> tuple[Any, Any]:
-        from .compiled_loop import compiled
+    def compiling() -> tuple[MachineCode, MachineCode]:
+        return machine_code(tape, rates, WITH_CARE), machine_code(tape, values, WITH_CARE)
 
-        return compiled(tape, rates), compiled(tape, values)
-
-    def compiling() -> tuple[_Function, ...]:
-        from .lowering import has_machine_code, machine_code
-
-        parts = rates, values
-        return _functions(partial(machine_code, tape), tape, *parts) if has_machine_code(tape, *parts) else ()
-
-    work = len(tape.needed(rates)), len(tape.needed([*rates, *values]))
-    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(parameters), *work, compiling)
+    operations = len(tape.needed(rates))
+    work = operations * (1.0 if _is_long(operations) and available() else _OF_PYTHON)
+    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, compiling, len(parameters), work)
 
 
-def _functions(
-    make: Callable[[Sequence[Any]], _Function], tape: Tape, *outputs: Sequence[Any]
-) -> tuple[_Function, ...]:
-    """Return a function for each of some lists of outputs; parts of one where long lists are all but the same work.
+def _functions(tape: Tape, *outputs: Sequence[Any]) -> tuple[_Function, ...]:
+    """Return a function for each of some lists of outputs, in machine code where they are long.
 
-    Python takes a tenth of a second to compile ten thousand operations.
+    They are parts of one where long lists are all but the same work. To make one of ten thousand operations takes a
+    tenth of a second, so each is made when it is first called.
     """
     together, edges = [one for part in outputs for one in part], [0]
     for part in outputs:
         edges.append(edges[-1] + len(part))
     operations = len(tape.needed(outputs[0]))
-    if operations < _LONG or len(tape.needed(together)) > _ALIKE * operations:
-        return tuple(make(part) for part in outputs)
-    whole = make(together)
+    make = machine_code if _is_long(operations) and available() else Tape.function
+    if not _is_long(operations) or len(tape.needed(together)) > _ALIKE * operations:
+        return tuple(_when_called(partial(make, tape, part)) for part in outputs)
+    whole = _when_called(partial(make, tape, together))
 
     def between(begin: int, end: int) -> _Function:
         return lambda x: whole(x)[begin:end]
 
     return tuple(between(*pair) for pair in pairwise(edges))
+
+
+def _is_long(operations: int) -> bool:
+    return operations >= _LONG
+
+
+def _when_called(make: Callable[[], _Function]) -> _Function:
+    """Return a function that is made when it is first called."""
+    made = cache(make)
+    return lambda x: made()(x)
 
 
 def _recorded(state: Sequence[Scalar]) -> list[Scalar]:

@@ -78,7 +78,7 @@ class Pieces:
 
 
 def evaluated(starts: Any, others: Any, terms: Any, x: float, y: float = 0.0) -> float:
-    """Return the value of pieces at a number; numba compiles this, too.
+    """Return the value of pieces at a number; machine code has it, too, in the same order.
 
     Examples
     --------
