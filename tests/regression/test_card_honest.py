@@ -431,6 +431,18 @@ def test_a_body_whose_resistance_turns_round_slips_before_friction_has_given_all
     assert told == "begins to slip after {}"  # it does not come to rest
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.5])
+def test_what_a_body_thrown_outwards_has_about_the_axle_is_small_beside_its_products(turn: float) -> None:
+    """A ball rolls down a hill that turns freely: x V_y and y V_x all but cancel, and were taken for one part."""
+    c, s = float(np.cos(turn)), float(np.sin(turn))
+    start = {"position": [0.00511 * s, -0.00511 * c], "velocity": [0.1248 * s - 0.0297 * c, -0.1248 * c - 0.0297 * s]}
+    body = {"kind": "eccentric-sphere", "radius": 0.164625, "mass": 1.01397, "moments": [0.007473, 0.011016, 0.007473]}
+    support = {"kind": "paraboloid", "radius": -1.43869, "friction": 0.46084}
+    support |= {"motion": {"kind": "free-axle", "inertia": 0.00125727}}
+    run = {"duration": 2.0, "every": 0.028, "method": "taylor"}
+    passes(body=body, support=support, start=start | {"spin": 1.00813}, run=run)
+
+
 def test_a_hemisphere_that_tips_over_its_edge() -> None:
     body = {"kind": "hemisphere", "radius": 0.0189, "mass": 0.1196}
     motion = {"kind": "free-axle", "inertia": 0.003368, "rate": -6.93}

@@ -45,9 +45,9 @@ def _energy(system: RollingSystem, at: Record) -> list[Scalar]:
 
 
 def _about_axis(system: RollingSystem, at: Record) -> list[Scalar]:
-    """Return e·L: of the orbit, and of the turning."""
-    r, V = at.motion.position, at.motion.velocity
-    return [r.cross(V).z * system.body.mass, spin_momentum(system, at).z]
+    """Return e·L: of the orbit, whose two products all but cancel as a body goes outwards, and of the turning."""
+    r, V = at.motion.position, at.motion.velocity * system.body.mass
+    return [r.x * V.y, -(r.y * V.x), spin_momentum(system, at).z]
 
 
 def _moving_energy(system: RollingSystem, at: Record) -> list[Scalar]:
