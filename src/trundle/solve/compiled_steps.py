@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from . import machine_code
 from .samples import Array
 from .tracing import CompiledLaw
 
@@ -20,14 +21,14 @@ _AT_ONCE = 500  # steps: some milliseconds, after which somebody may have lost p
 
 
 def available() -> bool:
-    """Tell whether there is a compiler: numba, of the extra `numba`.
+    """Tell whether there is what compiles the loop, numba of the extra `numba`, and what makes machine code of a law.
 
     Examples
     --------
     >>> available()
     True
     """
-    return find_spec("numba") is not None
+    return find_spec("numba") is not None and machine_code.available()
 
 
 @cache

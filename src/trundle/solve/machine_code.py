@@ -20,8 +20,9 @@ import numpy as np
 from ..mechanics.surfaces.splines import Pieces
 from .tape import Node, Tape
 
-IN_HASTE, WITH_CARE = 0, 2  # levels of LLVM's: of care is worth no more than so many operations
-_MOST_WITH_CARE = 4000
+IN_HASTE, WITH_CARE = 0, 2  # LLVM's levels of optimisation
+_MOST_WITH_CARE = 4000  # operations: with more of them care takes seconds, and the code is hardly faster
+_FIRST = (16,)  # LLVM whose pointers have no types
 _TWO = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv", "<": "fcmp olt", ">": "fcmp ogt"}
 _LIBRARY = {"sin": 1, "cos": 1, "tan": 1, "exp": 1, "expm1": 1, "log": 1, "atan2": 2}  # and how many operands each has
 _INSTRUCTIONS = {"sqrt": "llvm.sqrt.f64", "abs": "llvm.fabs.f64"}
@@ -45,7 +46,7 @@ def available() -> bool:
     from llvmlite import binding
 
     library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
-    if not all(hasattr(library, name) for name in _LIBRARY):
+    if binding.llvm_version_info < _FIRST or not all(hasattr(library, name) for name in _LIBRARY):
         return False
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
