@@ -31,7 +31,7 @@ _LEFT_OUT = 1e-11
 _IN_SERIES, _LATE = 2e5, 5e3
 # Where a direction settles faster than by so many times N/m, as on a light axle, V̇ shows what is left out of it so many
 # times larger: no more is counted for being late.
-_EVEN, _ANYHOW = 4.0, 1e12
+_FASTEST, _ANYHOW = 4.0, 1e12
 _TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
 _LASTS = 50.0  # times the step over which its turning is seen: about how long it holds
 SEEN = 1e-4  # of the time in which the motion changes: over it one sees how the direction turns
@@ -67,7 +67,7 @@ class CreepingLaw(SlippingLaw):
         A unit vector: near it is the direction that slip keeps.
     in_series : float
         How many times its direction settles, at the least, in the time in which the motion changes.
-    even : float
+    fastest : float
         How fast it counts as settling for that, at the most, in units of N/m.
     """
 
@@ -84,10 +84,10 @@ class CreepingLaw(SlippingLaw):
         since: float = 0.0,
         near: tuple[float, float, float] = (1.0, 0.0, 0.0),
         in_series: float = 0.0,
-        even: float = _ANYHOW,
+        fastest: float = _ANYHOW,
     ) -> None:
         super().__init__(weightless, turning)
-        self.step, self.since, self.in_series, self.even = step, since, in_series, even
+        self.step, self.since, self.in_series, self.fastest = step, since, in_series, fastest
         self.near_x, self.near_y, self.near_z = near
 
     @property
@@ -107,7 +107,7 @@ class CreepingLaw(SlippingLaw):
     def before_series(self, *, late: bool = False) -> CreepingLaw:
         """Return the same law, handed on where series follow its direction with less work."""
         near = self.near_x, self.near_y, self.near_z
-        how = (_LATE, _EVEN) if late else (_IN_SERIES, _ANYHOW)
+        how = (_LATE, _FASTEST) if late else (_IN_SERIES, _ANYHOW)
         return CreepingLaw(self.weightless, self.turning, self.step, self.since, near, *how)
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
@@ -211,7 +211,7 @@ class CreepingLaw(SlippingLaw):
         hat, settling, left_out = self._way(system, time, state)
         now, Omega = self._now(system, time, state, hat), self.split(state)[2]
         speed = state[10]
-        most = now.normal_force * self.even / system.body.mass
+        most = now.normal_force * self.fastest / system.body.mass
         counted = settling * most / (settling + most)
         return {
             **self._pressing(system, now, event_parameters),
