@@ -21,13 +21,14 @@ from .conftest import Command
 HEAVY = ("heyoka", "xarray", "matplotlib", "sympy", "scipy", "pint", "rich")
 
 
-def on_a_terminal(words: list[str], folder: Path, columns: int = 100, until: str = "") -> str:
+def on_a_terminal(words: list[str], folder: Path, columns: int = 100, until: str = "", patience: float = 1.0) -> str:
     """Return what the command prints when its output is a terminal; `until`: it is ended once it has printed this."""
+    code = f"from trundle.cli import run, screen; screen.PATIENCE = {patience}; run({words})"
     leader, follower = pty.openpty()
     env = {**os.environ, "TERM": "xterm-256color", "COLUMNS": str(columns)}
     env.pop("NO_COLOR", None)
     process = subprocess.Popen(  # noqa: S603
-        [sys.executable, "-m", "trundle", *words],
+        [sys.executable, "-c", code],
         cwd=folder,
         env=env,
         stdout=follower,
@@ -73,6 +74,14 @@ def test_no_colours_and_no_boxes_in_a_pipe(trundle: Command, words: list[str]) -
     done = trundle(*words, env={"TERM": "xterm-256color"})
     assert "\x1b" not in done.out + done.err
     assert not re.search("[\u2500-\u257f]", done.out + done.err)
+
+
+@pytest.mark.parametrize("more", [[], ["--quiet"]])
+def test_a_card_that_takes_long_is_waited_for_in_sight(more: list[str], folder: Path) -> None:
+    """The run had its bar, and then nothing moved for as long again."""
+    printed = on_a_terminal(["run", "rattleback", "--no-figure", *more], folder, patience=0.01)
+    assert [said in printed for said in ("rolling", "checking")] == [not more, not more]
+    assert (folder / "rattleback" / "run.nc").exists()
 
 
 def test_colours_and_tables_on_a_terminal(folder: Path) -> None:

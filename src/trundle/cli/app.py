@@ -146,11 +146,13 @@ def run(
     with screen.ProgressBar(wanted=not quiet) as bar:
         trajectory = loaded.run(tolerance=tolerance, progress=bar)
     signals.check()
-    card, written = finish(trajectory, folder, names)
+    card, written = finish(trajectory, folder, names, quiet=quiet)
     return report(card, [event.text for event in trajectory.events], written, quiet=quiet, as_json=as_json)
 
 
-def finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tuple[Card, list[Path]]:
+def finish(
+    trajectory: Trajectory, folder: Path, names: tuple[str, ...], *, quiet: bool = False
+) -> tuple[Card, list[Path]]:
     """Make card, figures and file, on two processors where there are two, and let the files appear together."""
     from .apart import ForkedCall
     from .writing import write_together
@@ -158,7 +160,9 @@ def finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tupl
     with ForkedCall(trajectory.card) as checked, ExitStack() as drawing:  # checking imports heyoka meanwhile
 
         def save(path: Path) -> None:
-            trajectory.with_card(checked.result()).save(path)
+            with screen.ProgressBar(wanted=not quiet, doing="checking") as bar, bar.waiting():
+                card = checked.result()
+            trajectory.with_card(card).save(path)
 
         def draw_path(path: Path) -> None:
             import matplotlib.backends.backend_agg  # before the copy is made, which then has them too

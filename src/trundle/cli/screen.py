@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Timer
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -184,12 +186,33 @@ class ProgressBar:
             rate = fraction * self.members / (time.monotonic() - self._began)
             self._bar.update(self._bar.task_ids[0], completed=fraction, rate=f"{rate:,.4g} a second")
 
-    def _begin(self) -> None:
-        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    @contextmanager
+    def waiting(self) -> Iterator[None]:
+        """Show after a while that something goes on, of which nobody knows how much is left."""
+        timer = Timer(PATIENCE, self._begin, [None])
+        if self.wanted:
+            timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
+            if timer.ident is not None:
+                timer.join()
 
-        columns = [TextColumn(self.doing), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()]
+    def _begin(self, total: float | None = 1.0) -> None:
+        from rich.progress import (
+            BarColumn,
+            Progress,
+            TaskProgressColumn,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
+
+        left = [TimeElapsedColumn()] if total is None else [TaskProgressColumn(), TimeRemainingColumn()]
+        columns = [TextColumn(self.doing), BarColumn(), *left]
         if self.members:
             columns.append(TextColumn("{task.fields[rate]}"))
         self._bar = Progress(*columns, console=_console(stderr=True), transient=True)
-        self._bar.add_task("", total=1.0, rate="")
+        self._bar.add_task("", total=total, rate="")
         self._bar.start()
