@@ -594,6 +594,22 @@ def test_an_axle_that_only_rounding_turns_passes(kind: str) -> None:
     assert np.abs(run.samples.support_coordinates[:, -1]).max() <= 1e-14
 
 
+@pytest.mark.parametrize("rate", [4.41542, -4.41542, 0.02, 1e-9])
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_an_axle_that_its_bearing_stops_under_a_body_in_flight(method: str, rate: float) -> None:
+    """Nothing but the bearing is there to measure by, and that has nothing left to do."""
+    axle = {"kind": "free-axle", "inertia": 0.002, "rate": rate, "bearing_torque": 2.1}
+    support = {"kind": "cylinder", "radius": 0.1, "side": "outside", "friction": 0.54, "motion": axle}
+    start = {"position": [-0.246881, 0.0], "velocity": [0.343, 0.513, 0.149], "height": 0.124508}
+    body = {"kind": "torus", "radius": 0.075, "rim_radius": 0.069, "density": 6414}
+    run = passes(body=body, support=support, start=start, run={"duration": 0.8, "every": 0.015, "method": method})
+    again = Again(run.system, run.start, run.samples, Method.of(method))
+    at = again.places(again.windows.ravel())
+    turned = at.support_coordinates + [0.0, 1e-9]
+    found = residuals(run.system, replace(at, support_coordinates=turned), again.windows, again.bound)
+    assert found.law > again.bound  # a thousand-millionth of a radian a second is told
+
+
 @pytest.mark.usefixtures("through_walls")
 def test_the_last_instant_before_a_singular_end_leaves_the_windows_wide() -> None:
     # Where the support is as hollow as the body is round the force is a million times that of all other instants.

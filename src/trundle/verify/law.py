@@ -347,12 +347,12 @@ class _Windows:
         change, rate = self.slope(self.all.support_coordinates), at.support_coordinates[:, -1]
         # Of a force that presses on past the axle, and of a slope, no smaller moment is told from none.
         pressing = _PRODUCT * largest(arm) * largest(R) / self.bound
-        fastest = max(np.abs(rate).max(), largest(at.angular_velocity))  # a step's error is a share of it
+        # A step's error is a share of the largest number of the state, and |q| is 1.
+        fastest = max(1.0, np.abs(rate).max(), largest(at.angular_velocity))
         sharp = motion.inertia * self._stepped * fastest / self.half / self.bound
         steady = motion.inertia * np.abs(rate).max() * self.rate
         size = max(*(float(np.abs(part).max()) for part in parts), steady, pressing + sharp)
         law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
-        # A step's error is a share of the largest number of the state, and |q| is 1.
         angle = 1 + float(np.abs(at.support_coordinates[:, -2]).max()) + np.abs(rate).max() * self._clock
         turned = np.abs(change[:, -2] - rate).max()
         sharp = self._stepped * angle / self.half / self.bound
