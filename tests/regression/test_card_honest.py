@@ -605,7 +605,7 @@ def test_an_axle_that_its_bearing_stops_under_a_body_in_flight(method: str, rate
     run = passes(body=body, support=support, start=start, run={"duration": 0.8, "every": 0.015, "method": method})
     again = Again(run.system, run.start, run.samples, Method.of(method))
     at = again.places(again.windows.ravel())
-    turned = at.support_coordinates + [0.0, 1e-9]
+    turned = np.add(at.support_coordinates, (0.0, 1e-9))
     found = residuals(run.system, replace(at, support_coordinates=turned), again.windows, again.bound)
     assert found.law > again.bound  # a thousand-millionth of a radian a second is told
 
