@@ -26,10 +26,10 @@ _UNTRACED = 250_000.0  # the same for a law on vectors
 
 @dataclass(frozen=True)
 class CompiledLaw:
-    """A law as `compiled_loop` takes it: functions of [t, *state, *values] that fill in an array."""
+    """A law as `compiled_loop` takes it: functions of [t, *state, *values]."""
 
-    rates: Any
-    event_functions: Any
+    rates: MachineCode
+    event_functions: MachineCode
     count: int  # of the event functions
     values: tuple[float, ...]
 
